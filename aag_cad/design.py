@@ -1,0 +1,327 @@
+"""The design file: what a designer writes, validated before anything is built."""
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeAlias
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from aag_cad.errors import DesignError, FileError
+from aag_cad.resources import template
+
+Positive: TypeAlias = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NotNegative: TypeAlias = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]*$", max_length=40)]
+
+
+class Section(BaseModel):
+    """A table of the design file: extra keys are refused, values never change."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Project(Section):
+    """What the files are called and who made them."""
+
+    name: Name = Field(description="used in file names: lower-case letters, digits, - and _")
+    title: str = Field(min_length=1, max_length=80)
+    author: str = ""
+    organisation: str = ""
+
+
+class CrpcSurface(Section):
+    """Constant ratio of principal curvatures: k_meridian = -ratio * k_parallel."""
+
+    profile: Literal["crpc"]
+    neck_radius: Positive
+    ratio: Annotated[float, Field(gt=0.05, le=20)]
+
+
+class CatenoidSurface(Section):
+    """The catenoid: crpc with ratio 1."""
+
+    profile: Literal["catenoid"]
+    neck_radius: Positive
+
+
+class HyperboloidSurface(Section):
+    """Hyperboloid of one sheet r = neck_radius cosh u, z = semi_axis sinh u."""
+
+    profile: Literal["hyperboloid"]
+    neck_radius: Positive
+    semi_axis: Positive
+
+
+class SplineSurface(Section):
+    """Meridian through points (radius, height), lowest first, from below the ground line z = 0 to the top."""
+
+    profile: Literal["spline"]
+    points: Annotated[tuple[tuple[Positive, float], ...], Field(min_length=6)]
+
+
+SurfaceSection: TypeAlias = Annotated[
+    CrpcSurface | CatenoidSurface | HyperboloidSurface | SplineSurface, Field(discriminator="profile")
+]
+
+
+class Shells(Section):
+    """How many shells meet about the centre, and which part of the surface each takes."""
+
+    count: Annotated[int, Field(ge=3, le=12)]
+    axis_distance: Positive = Field(description="mm from the centre to the vertical axis of each shell")
+    sector_deg: Annotated[float, Field(gt=0, lt=180)]
+
+
+class Pattern(Section):
+    """The tri-hex pattern."""
+
+    geodesics: Annotated[int, Field(ge=4, le=200, multiple_of=2)]
+    row_offset: Annotated[float, Field(ge=0, lt=1)] = 0.5
+    min_nodes: Annotated[int, Field(ge=1)] = 3
+    node_clearance_foot: NotNegative = 100.0
+    node_clearance_ridge: NotNegative = 150.0
+
+
+class Strength(Section):
+    """Characteristic values of an EN 338 class, N/mm2 and kg/m3."""
+
+    f_m: Positive
+    f_t0: Positive
+    f_c0: Positive
+    f_c90: Positive
+    f_v: Positive
+    E0: Positive
+    E05: Positive
+    G: Positive
+    rho_k: Positive
+    rho_mean: Positive
+
+
+class Timber(Section):
+    """Species, strength class and the one cross-section of all planks."""
+
+    species: str = Field(min_length=1)
+    strength_class: Literal["D30", "D35", "D40", "D50", "D60"]
+    density: Positive = Field(description="kg/m3")
+    width: Positive
+    thickness: Positive
+    min_bending_radius: Positive
+    max_twist_deg_per_m: Positive
+
+    @property
+    def strength(self) -> Strength:
+        """The characteristic values of the strength class."""
+        with template("en338.toml").open("rb") as file:
+            return Strength(**tomllib.load(file)[self.strength_class])
+
+
+class Joints(Section):
+    """Gap, studs, bolts, screws and coupling blocks."""
+
+    gap: Positive
+    stud_across_flats: Positive
+    stud_length: Positive
+    bolt_diameter: Literal[6.0, 8.0, 10.0, 12.0]
+    bolt_hole: Positive
+    bolt_offset: NotNegative
+    screw_diameter: Positive
+    screw_hole: Positive
+    screw_length: Positive
+    block_length: Positive
+
+
+class Boundary(Section):
+    """Ends of planks and what stays free at the ridges."""
+
+    end_gap: NotNegative
+    end_overhang: Positive
+    max_overhang: Positive
+    ridge_setback: Positive
+    ridge_gap: NotNegative
+
+
+class Facade(Section):
+    """Polycarbonate sheets."""
+
+    sheet_thickness: Positive
+    sheet_width: Positive
+
+
+class Supports(Section):
+    """What stands under the foot of each geodesic."""
+
+    foot_height: Positive
+    block_size: tuple[Positive, Positive, Positive]
+
+
+class Transport(Section):
+    """The largest piece that travels."""
+
+    length: Positive
+    width: Positive
+    height: Positive
+    mass: Positive
+
+
+class Crew(Section):
+    """Who assembles it."""
+
+    people: Annotated[int, Field(ge=1, le=40)]
+    lift_limit: Positive = Field(description="kg per person")
+
+
+class Design(Section):
+    """One design file."""
+
+    project: Project
+    surface: SurfaceSection
+    shells: Shells
+    pattern: Pattern
+    timber: Timber
+    joints: Joints
+    boundary: Boundary
+    facade: Facade
+    supports: Supports
+    transport: Transport
+    crew: Crew
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> "Design":
+        limit = 180.0 - 360.0 / self.shells.count
+        rules = (
+            (
+                self.shells.sector_deg <= limit,
+                f"shells.sector_deg: {self.shells.sector_deg:g} is too wide for {self.shells.count} shells; "
+                f"at most {limit:g}, or neighbouring shells rise again beyond the entry: narrow the sector",
+            ),
+            (
+                self.timber.thickness < self.joints.gap,
+                f"timber.thickness: {self.timber.thickness:g} mm is not thinner than joints.gap {self.joints.gap:g} mm; "
+                "choose a thinner plank or a wider gap",
+            ),
+            (
+                self.timber.thickness < self.timber.width,
+                f"timber.thickness: {self.timber.thickness:g} mm is not less than timber.width {self.timber.width:g} mm; "
+                "swap the two",
+            ),
+            (
+                self.joints.stud_across_flats == self.joints.gap,
+                f"joints.stud_across_flats: {self.joints.stud_across_flats:g} mm does not fill joints.gap "
+                f"{self.joints.gap:g} mm; make them equal",
+            ),
+            (
+                self.joints.bolt_diameter <= self.joints.bolt_hole <= self.joints.bolt_diameter + 1.0,
+                f"joints.bolt_hole: {self.joints.bolt_hole:g} mm for a bolt of {self.joints.bolt_diameter:g} mm; "
+                "EN 1995-1-1, 10.4.3 allows the diameter to the diameter + 1 mm",
+            ),
+            (
+                self.joints.screw_diameter <= self.joints.screw_hole,
+                f"joints.screw_hole: {self.joints.screw_hole:g} mm is narrower than joints.screw_diameter "
+                f"{self.joints.screw_diameter:g} mm",
+            ),
+            (
+                2 * self.joints.bolt_offset + self.joints.bolt_hole < self.timber.width,
+                f"joints.bolt_offset: {self.joints.bolt_offset:g} mm puts the holes outside the plank of "
+                f"{self.timber.width:g} mm width; at most {(self.timber.width - self.joints.bolt_hole) / 2:g}",
+            ),
+            (
+                self.joints.bolt_hole < 2 * self.joints.bolt_offset,
+                f"joints.bolt_offset: {self.joints.bolt_offset:g} mm lets the two holes of {self.joints.bolt_hole:g} mm "
+                "run into each other; make it larger",
+            ),
+            (
+                self.timber.thickness < self.joints.screw_length < self.timber.thickness + self.timber.width,
+                f"joints.screw_length: {self.joints.screw_length:g} mm does not end inside the coupling block; "
+                f"allowed {self.timber.thickness:g} to {self.timber.thickness + self.timber.width:g}",
+            ),
+            (
+                self.boundary.end_overhang <= self.boundary.max_overhang,
+                f"boundary.end_overhang: {self.boundary.end_overhang:g} mm is more than boundary.max_overhang "
+                f"{self.boundary.max_overhang:g} mm",
+            ),
+            (
+                self.boundary.ridge_setback >= self.timber.width / 2 + self.boundary.ridge_gap,
+                f"boundary.ridge_setback: {self.boundary.ridge_setback:g} mm leaves no room for half a plank and "
+                f"boundary.ridge_gap; at least {self.timber.width / 2 + self.boundary.ridge_gap:g}",
+            ),
+        )
+        broken = [text for holds, text in rules if not holds]
+        if broken:
+            raise ValueError("\n".join(broken))
+        return self
+
+    @property
+    def step(self) -> float:
+        """Angle between neighbouring geodesics about the shell's axis, radians."""
+        return math.radians(self.shells.sector_deg) / (self.pattern.geodesics - 1)
+
+    @property
+    def half_sector(self) -> float:
+        """Half of the sector, radians."""
+        return math.radians(self.shells.sector_deg) / 2.0
+
+    @property
+    def layer_offset(self) -> float:
+        """Distance of the centre of the beams from the surface along its normal, mm."""
+        return (self.timber.width + self.timber.thickness) / 2.0
+
+    @property
+    def sibling_offset(self) -> float:
+        """Distance of the centre of each sibling plank from the centre of its beam, mm."""
+        return (self.joints.gap + self.timber.thickness) / 2.0
+
+
+def _explain(error: ValidationError) -> str:
+    """Return one line per fault: the key's path, what was found, what is allowed."""
+    lines = []
+    for fault in error.errors():
+        path = ".".join(str(part) for part in fault["loc"])
+        if not path:
+            lines.append(str(fault["msg"]).removeprefix("Value error, "))
+        elif fault["type"] == "extra_forbidden":
+            lines.append(f"{path}: unknown key; remove it or check its spelling (`aag schema` lists all keys)")
+        elif fault["type"] == "missing":
+            lines.append(f"{path}: missing; `aag new` writes a commented file that has it")
+        else:
+            lines.append(f"{path}: {fault['msg']}, found {fault['input']!r}")
+    return "\n".join(lines)
+
+
+def parse_design(text: str, source: str = "design") -> Design:
+    """Return the design in a TOML text; DesignError with every fault's key path, value and allowed range."""
+    if not text.strip():
+        raise DesignError(f"{source}: the file is empty; `aag new NAME` writes a commented design to start from")
+    try:
+        data: dict[str, Any] = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise DesignError(f"{source}: not valid TOML: {error}") from error
+    try:
+        return Design.model_validate(data)
+    except ValidationError as error:
+        raise DesignError(f"{source}:\n{_explain(error)}") from error
+
+
+def shipped_designs() -> list[str]:
+    """Return the names of the shipped designs, sorted."""
+    return sorted(path.stem for path in template("designs").glob("*.toml"))
+
+
+def design_text(name_or_path: str) -> tuple[str, str]:
+    """Return (text, source) of a shipped design or of a file; FileError if neither can be read."""
+    if name_or_path in shipped_designs():
+        path = template("designs", f"{name_or_path}.toml")
+    else:
+        path = Path(name_or_path)
+    try:
+        return path.read_text(encoding="utf-8"), name_or_path
+    except FileNotFoundError as error:
+        names = ", ".join(shipped_designs())
+        raise FileError(f"{name_or_path}: no such design file, and not a shipped design ({names})") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(f"{name_or_path}: cannot be read as a text file: {error}") from error
+
+
+def load_design(name_or_path: str) -> Design:
+    """Return the design of a shipped name or of a TOML file; FileError or DesignError if it cannot be had."""
+    return parse_design(*design_text(name_or_path))

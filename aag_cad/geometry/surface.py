@@ -1,0 +1,78 @@
+"""Surfaces as 2-jets: first and second fundamental forms, normals and curvatures."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from aag_cad.units import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Jet:
+    """Point and partial derivatives to second order of a surface X(u, v); each (n, 3) float, mm."""
+
+    point: Floats
+    du: Floats
+    dv: Floats
+    duu: Floats
+    duv: Floats
+    dvv: Floats
+
+
+class Surface(Protocol):
+    """Any C2 surface X(u, v)."""
+
+    def jet(self, u: Floats, v: Floats) -> Jet:
+        """Return the 2-jet at the parameters u, v, each (n,) float."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Forms:
+    """Coefficients of the first (E, F, G) and second (L, M, N) fundamental form; each (n,) float."""
+
+    E: Floats
+    F: Floats
+    G: Floats
+    L: Floats
+    M: Floats
+    N: Floats
+
+
+def dot(a: Floats, b: Floats) -> Floats:
+    """Return the row-wise scalar product of two (n, 3) arrays as (n,)."""
+    return np.einsum("ij,ij->i", a, b)
+
+
+def unit(a: Floats) -> Floats:
+    """Return the rows of an (n, 3) array scaled to length 1."""
+    return a / np.linalg.norm(a, axis=-1, keepdims=True)
+
+
+def unit_normals(jet: Jet) -> Floats:
+    """Return the unit normals X_u x X_v / |X_u x X_v|, (n, 3)."""
+    return unit(np.cross(jet.du, jet.dv))
+
+
+def fundamental_forms(jet: Jet) -> Forms:
+    """Return both fundamental forms at the points of a jet (paper section 1.1)."""
+    normal = unit_normals(jet)
+    return Forms(
+        E=dot(jet.du, jet.du),
+        F=dot(jet.du, jet.dv),
+        G=dot(jet.dv, jet.dv),
+        L=dot(jet.duu, normal),
+        M=dot(jet.duv, normal),
+        N=dot(jet.dvv, normal),
+    )
+
+
+def gauss_curvature(forms: Forms) -> Floats:
+    """Return K = (LN - M^2) / (EG - F^2), (n,) 1/mm2; asymptotic curves exist where it is negative."""
+    return (forms.L * forms.N - forms.M**2) / (forms.E * forms.G - forms.F**2)
+
+
+def mean_curvature(forms: Forms) -> Floats:
+    """Return H = (EN - 2FM + GL) / 2(EG - F^2), (n,) 1/mm."""
+    return (forms.E * forms.N - 2 * forms.F * forms.M + forms.G * forms.L) / (2 * (forms.E * forms.G - forms.F**2))

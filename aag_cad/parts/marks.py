@@ -1,0 +1,60 @@
+"""The grammar of marks: the one place that prints and parses them.
+
+S1 shell; S1-A1-07 beam, S1-A1-07-L and -R its planks; S1-G-05 geodesic; S1-E-02 edge plank; S1-N-031 stud and AA joint;
+S1-K-012 coupling block and its joint; S1-F-05 shoe and foot joint; S1-R-05 ridge end of a geodesic; S1-C-05 concrete
+block; S1-P-05 strip; S1-M-05 mullion; R12-03 ridge blade; a bolt or screw adds -B1 or -W1 to the mark of its joint.
+"""
+
+import re
+from dataclasses import dataclass
+
+from aag_cad.errors import MarkError
+
+_WIDTH = {"A1": 2, "A2": 2, "G": 2, "E": 2, "F": 2, "R": 2, "C": 2, "P": 2, "M": 2, "N": 3, "K": 3}
+_PATTERN = re.compile(
+    r"S(?P<shell>[1-9]\d?)(?:-(?P<family>A1|A2|[GEFRCPMNK])-(?P<index>\d{2,5})(?:-(?P<part>[LR]|[BW][1-9]\d?))?)?"
+)
+_BLADE = re.compile(r"R(?P<pair>[1-9][1-9])-(?P<index>\d{2,5})")
+
+
+@dataclass(frozen=True, order=True)
+class Mark:
+    """A parsed mark: shell number (0 for a blade), family ("" for a shell), index, and what it adds ("L", "B1"...).
+
+    A blade has the family "R12" of the pair of shells that it joins.
+    """
+
+    shell: int
+    family: str = ""
+    index: int = 0
+    part: str = ""
+
+    def __str__(self) -> str:
+        """Return the mark as it is printed everywhere."""
+        if self.shell == 0:
+            return f"{self.family}-{self.index:02d}"
+        text = f"S{self.shell}"
+        if self.family:
+            text += f"-{self.family}-{self.index:0{_WIDTH[self.family]}d}"
+        return text + (f"-{self.part}" if self.part else "")
+
+
+def parse_mark(text: str) -> Mark:
+    """Return the parsed mark; MarkError if the text is not one, or not printed as we print it."""
+    if blade := _BLADE.fullmatch(text):
+        mark = Mark(0, f"R{blade['pair']}", int(blade["index"]))
+    elif found := _PATTERN.fullmatch(text):
+        mark = Mark(int(found["shell"]), found["family"] or "", int(found["index"] or 0), found["part"] or "")
+    else:
+        raise MarkError(
+            f"{text!r} is not a mark; marks look like S1, S1-A1-07, S1-A1-07-L, S1-G-05, S1-N-031 or R12-03"
+        )
+    if str(mark) != text or (mark.family and mark.index == 0):
+        raise MarkError(f"{text!r} is not a mark as it is printed; {str(mark)!r} would be, with indices from 1")
+    return mark
+
+
+def shell_of(text: str) -> str:
+    """Return the mark of the shell that a part belongs to, or "" for a ridge blade."""
+    mark = parse_mark(text)
+    return f"S{mark.shell}" if mark.shell else ""

@@ -1,0 +1,305 @@
+"""The gridshell as plain data: every part and every joint, in mm, in the coordinates of its shell.
+
+The truth of a plank is its blank (straight, with holes); ``curve`` says how the blank is bent. A point (x, y, z) of the
+blank, x along it from its start, y across its width and z through its thickness, both from the centre line, goes to
+``curve(x) + y * width_direction(x) + z * thickness_direction(x)``: see ``aag_cad.parts.forming``.
+"""
+
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+from aag_cad.geometry.framed import FramedCurve
+from aag_cad.units import Vector
+
+SCHEMA_VERSION = 1
+
+Family: TypeAlias = Literal["A1", "A2", "G", "E"]
+JointKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "ridge", "blade"]
+HoleUse: TypeAlias = Literal["bolt", "screw"]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A right-handed local frame; the axes are unit vectors."""
+
+    origin: Vector
+    x: Vector
+    y: Vector
+    z: Vector
+
+
+@dataclass(frozen=True)
+class CrossSection:
+    """Rectangle of a plank: width (the larger side) and thickness, mm."""
+
+    width: float
+    thickness: float
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A round hole through the thickness of a blank: centre (station, offset), diameter, mm; for which joint."""
+
+    station: float
+    offset: float
+    diameter: float
+    use: HoleUse
+    joint: str
+
+
+@dataclass(frozen=True)
+class EndCut:
+    """The cut at an end of a blank: angle between the cut and the length in the width plane; 90 is square."""
+
+    angle_deg: float = 90.0
+
+
+@dataclass(frozen=True)
+class Blank:
+    """The straight plank as it is cut and drilled: the object of fabrication; holes sorted by station."""
+
+    length: float
+    section: CrossSection
+    holes: tuple[Hole, ...]
+    start_cut: EndCut = EndCut()
+    end_cut: EndCut = EndCut()
+
+
+@dataclass(frozen=True)
+class JointStation:
+    """Where a joint sits on a curve: its mark and the arc length from the curve's start, mm."""
+
+    joint: str
+    station: float
+
+
+@dataclass(frozen=True)
+class Plank:
+    """One plank; ``upright`` planks stand on the surface (asymptotic), the others lie flat in it (geodesic).
+
+    ``curve`` is its centre line by its own arc length (length = blank.length); ``layer`` is -1, 0 or +1 along the
+    outward normal; ``beam`` is the mark of the coupled beam that it belongs to, or "".
+    """
+
+    mark: str
+    family: Family
+    layer: int
+    upright: bool
+    beam: str
+    curve: FramedCurve
+    blank: Blank
+    joints: tuple[JointStation, ...]
+
+
+@dataclass(frozen=True)
+class Beam:
+    """A coupled beam: two sibling planks (left and right of its direction, seen from outside) and what joins them."""
+
+    mark: str
+    family: Family
+    layer: int
+    planks: tuple[str, str]
+    curve: FramedCurve
+    joints: tuple[JointStation, ...]
+
+
+@dataclass(frozen=True)
+class CrossHole:
+    """A hole across a stud or block: height along the frame's own axis, direction as an angle about it, diameter."""
+
+    height: float
+    angle: float
+    diameter: float
+
+
+@dataclass(frozen=True)
+class Stud:
+    """A hexagonal stud: centre and axis z of its frame; x is the outward normal of one of its six flats.
+
+    A hole's height is along z from the centre, its angle is about z from x.
+    """
+
+    mark: str
+    frame: Frame
+    length: float
+    across_flats: float
+    holes: tuple[CrossHole, ...]
+
+
+@dataclass(frozen=True)
+class CouplingBlock:
+    """A timber block in the gap of a beam: x along the beam, y along the surface normal, z through the gap.
+
+    ``holes`` go through the gap (along z) at (along x, along y) from the centre.
+    """
+
+    mark: str
+    frame: Frame
+    length: float
+    width: float
+    thickness: float
+    holes: tuple[Hole, ...]
+
+
+@dataclass(frozen=True)
+class Bolt:
+    """A hexagon bolt with a washer at each end and a nut: ``frame.origin`` is the outer face of the first plank.
+
+    z of the frame points from the head to the nut; ``grip`` is the timber that it clamps; sizes in mm.
+    """
+
+    mark: str
+    frame: Frame
+    diameter: float
+    length: float
+    grip: float
+    across_flats: float
+    head_height: float
+    nut_height: float
+    washer_diameter: float
+    washer_thickness: float
+
+
+@dataclass(frozen=True)
+class Screw:
+    """A countersunk wood screw, head flush: ``frame.origin`` is the outer face of the plank, z points into it."""
+
+    mark: str
+    frame: Frame
+    diameter: float
+    length: float
+    head_diameter: float
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A polycarbonate strip between two neighbouring geodesics, bent along them."""
+
+    mark: str
+    left: FramedCurve
+    right: FramedCurve
+    thickness: float
+
+
+@dataclass(frozen=True)
+class Mullion:
+    """An aluminium profile along a geodesic that clamps two strips."""
+
+    mark: str
+    curve: FramedCurve
+    width: float
+    height: float
+
+
+@dataclass(frozen=True)
+class Shoe:
+    """The steel shoe at the foot of a geodesic; length along x, width along y, height along z."""
+
+    mark: str
+    frame: Frame
+    length: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True)
+class Footing:
+    """A precast concrete block under a shoe; length along x, width along y, height along z."""
+
+    mark: str
+    frame: Frame
+    length: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True)
+class Blade:
+    """A steel blade in a ridge plane between two shells; length along x, height along y, thickness along z."""
+
+    mark: str
+    frame: Frame
+    length: float
+    height: float
+    thickness: float
+    holes: tuple[Hole, ...]
+
+
+@dataclass(frozen=True)
+class Joint:
+    """What meets where: the members joined (planks, studs, blocks) and the fasteners, by mark.
+
+    AA: two beams on a stud; AG: a geodesic on a coupling block of a beam; boundary: an edge plank on such a block;
+    foot, ridge: the end of a geodesic at the bottom or ridge plank; blade: two shells at the ridge.
+    """
+
+    mark: str
+    kind: JointKind
+    point: Vector
+    normal: Vector
+    members: tuple[str, ...]
+    fasteners: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Shell:
+    """One shell: where it stands in the vault, and all its parts in its own coordinates."""
+
+    mark: str
+    placement: Frame
+    planks: tuple[Plank, ...]
+    beams: tuple[Beam, ...]
+    studs: tuple[Stud, ...]
+    blocks: tuple[CouplingBlock, ...]
+    bolts: tuple[Bolt, ...]
+    screws: tuple[Screw, ...]
+    joints: tuple[Joint, ...]
+    strips: tuple[Strip, ...] = ()
+    mullions: tuple[Mullion, ...] = ()
+    shoes: tuple[Shoe, ...] = ()
+    footings: tuple[Footing, ...] = ()
+
+
+@dataclass(frozen=True)
+class Timber:
+    """The timber of all planks: densities in kg/m3, moduli and characteristic strengths in N/mm2, limits."""
+
+    species: str
+    strength_class: str
+    density: float
+    modulus: float
+    shear_modulus: float
+    bending_strength: float
+    shear_strength: float
+    min_bending_radius: float
+    max_twist: float
+
+
+@dataclass(frozen=True)
+class Gridshell:
+    """The whole structure; ``ground`` is the height of the ground in vault coordinates, mm."""
+
+    schema_version: int
+    name: str
+    title: str
+    timber: Timber
+    ground: float
+    shells: tuple[Shell, ...]
+    blades: tuple[Blade, ...] = ()
+    joints: tuple[Joint, ...] = field(default=())
+
+
+Part: TypeAlias = Plank | Stud | CouplingBlock | Bolt | Screw | Strip | Mullion | Shoe | Footing | Blade
+
+
+def shell_parts(shell: Shell) -> tuple[Part, ...]:
+    """Return every part of a shell, in the order of its fields; beams are assemblies of planks and not parts."""
+    return (
+        *shell.planks, *shell.studs, *shell.blocks, *shell.bolts, *shell.screws,
+        *shell.strips, *shell.mullions, *shell.shoes, *shell.footings,
+    )  # fmt: skip
+
+
+def all_parts(gridshell: Gridshell) -> tuple[Part, ...]:
+    """Return every part of the gridshell, shell by shell, then the blades."""
+    return (*(part for shell in gridshell.shells for part in shell_parts(shell)), *gridshell.blades)
