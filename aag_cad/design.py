@@ -122,7 +122,7 @@ class Joints(Section):
     gap: Positive
     stud_across_flats: Positive
     stud_length: Positive
-    bolt_diameter: Literal[6.0, 8.0, 10.0, 12.0]
+    bolt_diameter: Literal[6, 8, 10, 12]
     bolt_hole: Positive
     bolt_offset: NotNegative
     screw_diameter: Positive

@@ -1,0 +1,1 @@
+"""Plans the assembly of a gridshell; knows no CAD kernel."""

@@ -1,0 +1,1 @@
+"""Curvature of curves on surfaces, surfaces of revolution, splines and geodesics."""

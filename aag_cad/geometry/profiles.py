@@ -1,5 +1,6 @@
 """Meridians of surfaces of revolution: constant-ratio (CRPC), catenoid, hyperboloid of one sheet, spline."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -61,11 +62,11 @@ class CrpcProfile:
 
     def asymptotic(self, u: Floats) -> Floats:
         """Return the asymptotic coordinate s = u / sqrt(n)."""
-        return u / np.sqrt(self.ratio)
+        return u / math.sqrt(self.ratio)
 
     def from_asymptotic(self, s: Floats) -> Floats:
         """Return u = s sqrt(n)."""
-        return s * np.sqrt(self.ratio)
+        return s * math.sqrt(self.ratio)
 
 
 @dataclass(frozen=True)

@@ -42,12 +42,12 @@ class Forms:
 
 def dot(a: Floats, b: Floats) -> Floats:
     """Return the row-wise scalar product of two (n, 3) arrays as (n,)."""
-    return np.einsum("ij,ij->i", a, b)
+    return np.asarray(np.einsum("ij,ij->i", a, b), dtype=np.float64)
 
 
 def unit(a: Floats) -> Floats:
     """Return the rows of an (n, 3) array scaled to length 1."""
-    return a / np.linalg.norm(a, axis=-1, keepdims=True)
+    return np.asarray(a / np.linalg.norm(a, axis=-1, keepdims=True), dtype=np.float64)
 
 
 def unit_normals(jet: Jet) -> Floats:

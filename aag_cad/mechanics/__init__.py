@@ -1,0 +1,1 @@
+"""Stresses of bent and twisted planks."""

@@ -1,0 +1,1 @@
+"""The curves of one shell: selection, crossings, boundaries and crop."""

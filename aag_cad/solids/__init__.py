@@ -1,0 +1,1 @@
+"""CadQuery shapes of the parts."""

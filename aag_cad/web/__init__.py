@@ -1,0 +1,1 @@
+"""The discrete web of asymptotic and geodesic lines, and its quality."""

@@ -1,0 +1,71 @@
+"""Which parts are the same product: equal in shape and make, whatever their marks and places."""
+
+import hashlib
+from dataclasses import fields
+
+from aag_cad.geometry.framed import FramedCurve
+from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.model import (
+    Blade,
+    Bolt,
+    CouplingBlock,
+    Footing,
+    Frame,
+    Mullion,
+    Part,
+    Plank,
+    Screw,
+    Shoe,
+    Strip,
+    Stud,
+)
+
+_OWN_TO_THE_PIECE = {"mark", "beam", "joints", "frame", "joint"}
+
+
+def part_frame(part: Part) -> Frame | None:
+    """Return the frame that a product is placed by, or None if it is drawn in the coordinates of its shell."""
+    return part.frame if isinstance(part, Stud | CouplingBlock | Bolt | Screw | Shoe | Footing | Blade) else None
+
+
+def _feed(value: object) -> str:
+    if isinstance(value, FramedCurve):
+        return f"{value.stations.round(6).tolist()}{value.points.round(6).tolist()}{value.normals.round(9).tolist()}"
+    if isinstance(value, tuple):
+        return "(" + ",".join(_feed(item) for item in value) + ")"
+    if hasattr(value, "__dataclass_fields__"):
+        inner = (f.name for f in fields(value) if f.name not in _OWN_TO_THE_PIECE)  # type: ignore[arg-type]
+        return type(value).__name__ + "".join(f";{name}={_feed(getattr(value, name))}" for name in inner)
+    return repr(value)
+
+
+def product_key(part: Part) -> str:
+    """Return a key of 16 hexadecimal digits that equal products share, in any shell."""
+    return hashlib.sha256(_feed(part).encode()).hexdigest()[:16]
+
+
+def product_name(part: Part) -> str:
+    """Return the name of a part's product as it stands in STEP and IFC, e.g. ``Hexagon stud 24 x 220``."""
+    mark = parse_mark(part.mark)
+    match part:
+        case Plank():
+            suffix = f"-{mark.part}" if mark.part else ""
+            return f"Plank {mark.family}-{mark.index:02d}{suffix}"
+        case Stud():
+            return f"Hexagon stud {part.across_flats:g} x {part.length:g}"
+        case CouplingBlock():
+            return f"Coupling block {part.length:g} x {part.width:g} x {part.thickness:g}"
+        case Bolt():
+            return f"Bolt M{part.diameter:g} x {part.length:g}"
+        case Screw():
+            return f"Screw {part.diameter:g} x {part.length:g}"
+        case Strip():
+            return f"Strip {mark.index:02d}"
+        case Mullion():
+            return f"Mullion {mark.index:02d}"
+        case Shoe():
+            return f"Shoe {part.length:g} x {part.width:g}"
+        case Footing():
+            return f"Concrete block {part.length:g} x {part.width:g} x {part.height:g}"
+        case Blade():
+            return f"Ridge blade {part.length:g} x {part.height:g} x {part.thickness:g}"
