@@ -197,13 +197,13 @@ class Design(Section):
             ),
             (
                 self.timber.thickness < self.joints.gap,
-                f"timber.thickness: {self.timber.thickness:g} mm is not thinner than joints.gap {self.joints.gap:g} mm; "
-                "choose a thinner plank or a wider gap",
+                f"timber.thickness: {self.timber.thickness:g} mm is not thinner than joints.gap "
+                f"{self.joints.gap:g} mm; choose a thinner plank or a wider gap",
             ),
             (
                 self.timber.thickness < self.timber.width,
-                f"timber.thickness: {self.timber.thickness:g} mm is not less than timber.width {self.timber.width:g} mm; "
-                "swap the two",
+                f"timber.thickness: {self.timber.thickness:g} mm is not less than timber.width "
+                f"{self.timber.width:g} mm; swap the two",
             ),
             (
                 self.joints.stud_across_flats == self.joints.gap,
@@ -242,8 +242,8 @@ class Design(Section):
             ),
             (
                 self.boundary.ridge_setback >= self.timber.width / 2 + self.boundary.ridge_gap,
-                f"boundary.ridge_setback: {self.boundary.ridge_setback:g} mm leaves no room for half a plank and "
-                f"boundary.ridge_gap; at least {self.timber.width / 2 + self.boundary.ridge_gap:g}",
+                f"boundary.ridge_setback: {self.boundary.ridge_setback:g} mm leaves no room for half a plank "
+                f"and boundary.ridge_gap; at least {self.timber.width / 2 + self.boundary.ridge_gap:g}",
             ),
         )
         broken = [text for holds, text in rules if not holds]
@@ -309,10 +309,8 @@ def shipped_designs() -> list[str]:
 
 def design_text(name_or_path: str) -> tuple[str, str]:
     """Return (text, source) of a shipped design or of a file; FileError if neither can be read."""
-    if name_or_path in shipped_designs():
-        path = template("designs", f"{name_or_path}.toml")
-    else:
-        path = Path(name_or_path)
+    shipped = name_or_path in shipped_designs()
+    path = template("designs", f"{name_or_path}.toml") if shipped else Path(name_or_path)
     try:
         return path.read_text(encoding="utf-8"), name_or_path
     except FileNotFoundError as error:

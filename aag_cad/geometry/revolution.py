@@ -106,8 +106,8 @@ class AsymptoticChart:
         low, high = self.domain
         if np.any((s < low) | (s > high)):
             raise SurfaceError(
-                f"surface: the web asks for the asymptotic coordinate {float(np.max(np.abs(s))):.3f}, the meridian ends "
-                f"at [{low:.3f}, {high:.3f}]; lengthen the meridian or lower the shell"
+                f"surface: the web asks for the asymptotic coordinate {float(np.max(np.abs(s))):.3f}, the meridian "
+                f"ends at [{low:.3f}, {high:.3f}]; lengthen the meridian or lower the shell"
             )
         if isinstance(profile, ClosedFormAsymptotic):
             return profile.from_asymptotic(s)

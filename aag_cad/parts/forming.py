@@ -33,3 +33,20 @@ def blank_points(plank: Plank, points: Floats) -> Floats:
     centre, _tangent, width, thickness = plank_axes(plank, stations)
     gap = points - centre
     return np.column_stack([stations, dot(gap, width), dot(gap, thickness)])
+
+
+def axis_piercings(plank: Plank, origins: Floats, directions: Floats) -> Floats:
+    """Return the blank coordinates (n, 2) where straight axes (n, 3) pierce the middle surface of the formed plank.
+
+    The origins must lie near the plank. This is what makes siblings differ: the bolt is straight in space, and each
+    plank is drilled where the bolt meets it.
+    """
+    points = origins.astype(float)
+    for _ in range(8):
+        coordinates = blank_points(plank, points)
+        _point, _tangent, _width, thickness = plank_axes(plank, coordinates[:, 0])
+        step = coordinates[:, 2] / dot(directions, thickness)
+        points = points - step[:, None] * directions
+        if np.all(np.abs(step) < 1e-9):
+            break
+    return blank_points(plank, points)[:, :2]

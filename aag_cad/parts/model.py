@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from aag_cad.geometry.framed import FramedCurve
+from aag_cad.network.model import Family
 from aag_cad.units import Vector
 
 SCHEMA_VERSION = 1
 
-Family: TypeAlias = Literal["A1", "A2", "G", "E"]
 JointKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "ridge", "blade"]
 HoleUse: TypeAlias = Literal["bolt", "screw"]
 

@@ -1,0 +1,49 @@
+"""The curve network of one shell as plain data: curves, where their planks end, and their crossings."""
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, TypeAlias
+
+from aag_cad.geometry.framed import FramedCurve
+from aag_cad.units import Vector
+
+Family: TypeAlias = Literal["A1", "A2", "G", "E"]
+CrossingKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "ridge"]
+
+
+class CurveId(NamedTuple):
+    """Family and index (from 1) of a curve; E 1 is the bottom, E 2 and E 3 are the left and right ridge plank."""
+
+    family: Family
+    index: int
+
+
+@dataclass(frozen=True)
+class NetworkCurve:
+    """A curve on the reference surface that reaches past its plank; the plank lies over stations [start, end]."""
+
+    id: CurveId
+    curve: FramedCurve
+    start: float
+    end: float
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Where two curves are joined: the stations on each, the point and the surface normal there.
+
+    AA: A1 and A2; AG: A and G; boundary: A and E; foot: G and bottom; ridge: G and ridge plank, or two ridge planks.
+    """
+
+    kind: CrossingKind
+    curves: tuple[CurveId, CurveId]
+    stations: tuple[float, float]
+    point: Vector
+    normal: Vector
+
+
+@dataclass(frozen=True)
+class CurveNetwork:
+    """All curves and joined crossings of one shell, in shell coordinates, sorted by id and by place."""
+
+    curves: tuple[NetworkCurve, ...]
+    crossings: tuple[Crossing, ...]

@@ -1,0 +1,124 @@
+"""The joints of a shell: studs with their bolts, coupling blocks with bolt and screw, ends of geodesics."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from aag_cad.design import Design
+from aag_cad.geometry.surface import unit
+from aag_cad.network.model import Crossing
+from aag_cad.parts.fasteners import axis_frame, hexagon_bolt, wood_screw
+from aag_cad.parts.marks import Mark
+from aag_cad.parts.members import Drilling, beam_axes, curve_mark
+from aag_cad.parts.model import Beam, Bolt, CouplingBlock, CrossHole, Frame, Hole, Joint, Screw, Stud
+from aag_cad.units import Floats, vector
+
+
+@dataclass(frozen=True)
+class BuiltJoint:
+    """A joint with the parts that it brings, and the axes on which planks are drilled for it."""
+
+    joint: Joint
+    parts: tuple[Stud | CouplingBlock | Bolt | Screw, ...]
+    drillings: tuple[Drilling, ...]
+
+
+def _beam_bolt(
+    design: Design, mark: str, joint: str, beam: Beam, station: float, offset: float
+) -> tuple[Bolt, tuple[Drilling, ...]]:
+    """Return a bolt across a beam at a station, ``offset`` along the normal, and the drillings of both planks."""
+    point, _tangent, across, normal = beam_axes(beam, station)
+    centre = point + offset * normal
+    grip = design.joints.gap + 2 * design.timber.thickness
+    bolt = hexagon_bolt(
+        mark, design.joints.bolt_diameter, grip, axis_frame(centre + grip / 2.0 * across, -across, normal)
+    )
+    drillings = tuple(
+        Drilling(
+            plank,
+            vector(centre + sign * design.sibling_offset * across),
+            vector(across),
+            design.joints.bolt_hole,
+            "bolt",
+            joint,
+        )
+        for plank, sign in zip(beam.planks, (1.0, -1.0), strict=True)
+    )
+    return bolt, drillings
+
+
+def _stud_direction(directions: list[Floats], normal: Floats) -> Floats:
+    """Return the flat normal (3,) of a hexagon that faces all given directions as well as one hexagon can."""
+    first = unit(directions[0] - (directions[0] @ normal) * normal)
+    second = np.cross(normal, first)
+    angles = np.array([np.arctan2(d @ second, d @ first) for d in directions])
+    turn = float(np.angle(np.exp(6j * angles).mean())) / 6.0
+    return np.cos(turn) * first + np.sin(turn) * second
+
+
+def node_joint(design: Design, mark: Mark, crossing: Crossing, beams: list[Beam], stations: list[float]) -> BuiltJoint:
+    """Return an AA node: one stud along the normal through both gaps, two bolts through each beam and the stud."""
+    point, normal = np.array(crossing.point), np.array(crossing.normal)
+    across = [beam_axes(beam, station)[2] for beam, station in zip(beams, stations, strict=True)]
+    frame = axis_frame(point, normal, _stud_direction(across, normal))
+    bolts, drillings, holes = [], [], []
+    for beam, station, direction in zip(beams, stations, across, strict=True):
+        for offset in (-design.joints.bolt_offset, design.joints.bolt_offset):
+            bolt, drilled = _beam_bolt(design, f"{mark}-B{len(bolts) + 1}", str(mark), beam, station, offset)
+            bolts.append(bolt)
+            drillings += drilled
+            angle = float(np.arctan2(direction @ np.array(frame.y), direction @ np.array(frame.x)))
+            height = beam.layer * design.layer_offset + offset
+            holes.append(CrossHole(height, angle, design.joints.bolt_hole))
+    stud = Stud(str(mark), frame, design.joints.stud_length, design.joints.stud_across_flats, tuple(holes))
+    members = (*(plank for beam in beams for plank in beam.planks), stud.mark)
+    joint = Joint(str(mark), "AA", crossing.point, crossing.normal, members, tuple(bolt.mark for bolt in bolts))
+    return BuiltJoint(joint, (stud, *bolts), tuple(drillings))
+
+
+def block_joint(design: Design, mark: Mark, crossing: Crossing, beam: Beam, station: float) -> BuiltJoint:
+    """Return the joint of a flat plank on a beam: block in the gap, one bolt across it, one screw through the plank.
+
+    The block sits at the crossing, or flush with the end of the beam where that is nearer than half its length. The
+    bolt passes on the far side of the beam's centre line from the flat plank, clear of the screw's point.
+    """
+    shell = mark.shell
+    length, away = design.joints.block_length, float(beam.layer)
+    place = min(max(station, length / 2.0), beam.curve.length - length / 2.0)
+    point, tangent, across, normal = beam_axes(beam, place)
+    frame = Frame(vector(point), vector(tangent), vector(normal), vector(-across))
+    bolt, drillings = _beam_bolt(design, f"{mark}-B1", str(mark), beam, place, away * design.joints.bolt_offset)
+    block = CouplingBlock(
+        str(mark),
+        frame,
+        length,
+        design.timber.width,
+        design.joints.gap,
+        (Hole(0.0, away * design.joints.bolt_offset, design.joints.bolt_hole, "bolt", str(mark)),),
+    )
+    up = np.array(crossing.normal)
+    head = np.array(crossing.point) - away * design.timber.thickness / 2.0 * up
+    screw = wood_screw(
+        f"{mark}-W1",
+        design.joints.screw_diameter,
+        design.joints.screw_length,
+        axis_frame(head, away * up, tangent),
+    )
+    plank = curve_mark(shell, crossing.curves[1])
+    drilling = Drilling(plank, crossing.point, crossing.normal, design.joints.screw_hole, "screw", str(mark))
+    joint = Joint(
+        str(mark),
+        "boundary" if crossing.kind == "boundary" else "AG",
+        crossing.point,
+        crossing.normal,
+        (*beam.planks, plank, block.mark),
+        (bolt.mark, screw.mark),
+    )
+    return BuiltJoint(joint, (block, bolt, screw), (*drillings, drilling))
+
+
+def end_joint(mark: Mark, crossing: Crossing) -> BuiltJoint:
+    """Return the joint at the end of a flat plank: at the bottom plank (foot) or at a ridge plank (ridge)."""
+    members = tuple(curve_mark(mark.shell, curve) for curve in crossing.curves)
+    kind = "foot" if crossing.kind == "foot" else "ridge"
+    return BuiltJoint(Joint(str(mark), kind, crossing.point, crossing.normal, members, ()), (), ())
