@@ -1,0 +1,188 @@
+"""Every check of a gridshell as a coded finding; nothing stops at the first."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from aag_cad.design import Design
+from aag_cad.mechanics.lamella import LamellaStress, lamella_stress
+from aag_cad.parts.clash import clashes
+from aag_cad.parts.forming import formed_points
+from aag_cad.parts.model import Bolt, Gridshell, Plank, Shell, all_parts
+from aag_cad.units import Floats, deg_per_m
+
+Severity: TypeAlias = Literal["error", "warning", "note"]
+
+CONTACT = 1.0
+AXIS_TOLERANCE = 0.1
+_ROUNDING = 0.05
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One finding: a code, how bad it is, the mark, the figure found and allowed with its unit, and the remedy."""
+
+    code: str
+    severity: Severity
+    mark: str
+    what: str
+    found: float
+    allowed: float
+    unit: str
+    remedy: str
+
+    @property
+    def text(self) -> str:
+        """The finding in one line."""
+        return (
+            f"{self.mark}: {self.what} {self.found:.4g} {self.unit}, allowed {self.allowed:.4g} {self.unit}; "
+            f"{self.remedy}"
+        )
+
+
+Check: TypeAlias = Callable[[Design, Gridshell], Iterator[Finding]]
+
+
+def _planks(gridshell: Gridshell) -> Iterator[Plank]:
+    for shell in gridshell.shells:
+        yield from shell.planks
+
+
+def forming_stresses(gridshell: Gridshell) -> list[LamellaStress]:
+    """Return the forming stresses of every plank."""
+    return [lamella_stress(plank, gridshell.timber) for plank in _planks(gridshell)]
+
+
+def forming_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG101 to AAG105: radius, twist, combined bending, torsion, edgewise stress (paper section 3)."""
+    timber = gridshell.timber
+    rules: tuple[tuple[str, Severity, str, Callable[[LamellaStress], float], float, str, str], ...] = (
+        ("AAG101", "error", "smallest bending radius", lambda s: -s.smallest_radius, -timber.min_bending_radius, "mm",
+         "flatten the surface there or take thinner planks"),
+        ("AAG102", "error", "largest twist", lambda s: deg_per_m(s.largest_twist), design.timber.max_twist_deg_per_m,
+         "deg/m", "flatten the surface there"),
+        ("AAG103", "error", "bending and helix stress together", lambda s: s.combined, timber.bending_strength, "N/mm2",
+         "flatten the surface there or take thinner planks"),
+        ("AAG104", "warning", "torsion stress", lambda s: s.torsion, timber.shear_strength, "N/mm2",
+         "take thinner planks; the limit f_v is that of EN 338, the paper twists further"),
+        ("AAG105", "warning", "edgewise stress of forcing the unrolled plank straight", lambda s: s.edgewise,
+         timber.bending_strength / 5.0, "N/mm2", "bring the beams nearer to the surface or take narrower planks"),
+    )  # fmt: skip
+    for stress in forming_stresses(gridshell):
+        for code, severity, what, value, allowed, unit, remedy in rules:
+            if value(stress) > allowed:
+                yield Finding(code, severity, stress.mark, what, abs(value(stress)), abs(allowed), unit, remedy)
+
+
+def hole_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG201 (hole to end) and AAG202 (hole to edge) after EN 1995-1-1, tables 8.4 (bolts) and 8.2 (screws).
+
+    Nearer than the unloaded distance (bolts a3,c = 4 d, a4,c = 3 d; screws 7 d, 3 d) is an error; nearer than the
+    loaded one (bolts a3,t = max(7 d, 80 mm), a4,t = 4 d; screws 12 d, 7 d) a warning.
+    """
+    bolt, screw = design.joints.bolt_diameter, design.joints.screw_diameter
+    least = {"bolt": (4.0 * bolt, 3.0 * bolt), "screw": (7.0 * screw, 3.0 * screw)}
+    loaded = {"bolt": (max(7.0 * bolt, 80.0), 4.0 * bolt), "screw": (12.0 * screw, 7.0 * screw)}
+    for plank in _planks(gridshell):
+        blank = plank.blank
+        for use in ("bolt", "screw"):
+            holes = [hole for hole in blank.holes if hole.use == use]
+            if not holes:
+                continue
+            end = min(min(hole.station, blank.length - hole.station) for hole in holes)
+            edge = min(blank.section.width / 2.0 - abs(hole.offset) for hole in holes)
+            for code, what, found, i, remedy in (
+                ("AAG201", f"distance of a {use} hole from the end", end, 0, "lengthen the end or move the joint"),
+                ("AAG202", f"distance of a {use} hole from the edge", edge, 1, "move the hole inwards"),
+            ):
+                if found < least[use][i] - _ROUNDING:
+                    yield Finding(code, "error", plank.mark, what, found, least[use][i], "mm", remedy)
+                elif found < loaded[use][i] - _ROUNDING:
+                    yield Finding(code, "warning", plank.mark, f"{what} (loaded)", found, loaded[use][i], "mm", remedy)
+
+
+def end_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG301: ends that reach further past their last joint than ``boundary.max_overhang``."""
+    limit = design.boundary.max_overhang
+    for plank in _planks(gridshell):
+        if not plank.joints:
+            continue
+        reach = max(plank.joints[0].station, plank.blank.length - plank.joints[-1].station)
+        if reach > limit:
+            remedy = "cut it back or add a joint"
+            yield Finding("AAG301", "error", plank.mark, "an end past its last joint", reach, limit, "mm", remedy)
+
+
+def clash_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG401: parts that reach more than 1 mm into each other."""
+    for clash in clashes(gridshell.shells, CONTACT):
+        mark = f"{clash.first} and {clash.second}"
+        x, y, z = clash.point
+        where = f"run into each other at ({x:.0f}, {y:.0f}, {z:.0f}) by"
+        yield Finding(
+            "AAG401", "error", mark, where, clash.depth, CONTACT, "mm", "move the joint or cut one of them back"
+        )
+
+
+def joint_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG501 (a part without a joint) and AAG502 (a joint that names a part that is not there)."""
+    joints = [joint for shell in gridshell.shells for joint in shell.joints] + list(gridshell.joints)
+    named = {mark: joint.mark for joint in joints for mark in (*joint.members, *joint.fasteners)}
+    present = {part.mark for part in all_parts(gridshell)}
+    for mark in sorted(present - set(named)):
+        yield Finding("AAG501", "error", mark, "joints", 0, 1, "", "give it a joint or leave it out")
+    for mark in sorted(set(named) - present):
+        what = f"is missing, but named by joint {named[mark]}; parts"
+        yield Finding("AAG502", "error", mark, what, 0, 1, "", "add the part or mend the joint")
+
+
+def bolt_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG601 (a hole off the axis of its bolt) and AAG602 (a bolt that does not pass one hole in each plank)."""
+    for shell in gridshell.shells:
+        bolts = _bolts_by_joint(shell)
+        passed: Counter[str] = Counter()
+        for plank in shell.planks:
+            holes = [hole for hole in plank.blank.holes if hole.use == "bolt"]
+            if not holes:
+                continue
+            centres = formed_points(plank, np.array([[hole.station, hole.offset, 0.0] for hole in holes]))
+            for hole, centre in zip(holes, centres, strict=True):
+                gap, mark = min(((_axis_distance(bolt, centre), bolt.mark) for bolt in bolts[hole.joint]))
+                passed[mark] += 1
+                if gap > AXIS_TOLERANCE:
+                    what = f"hole at station {hole.station:.1f} mm off the axis of {mark} by"
+                    remedy = "drill where the bolt passes"
+                    yield Finding("AAG601", "error", plank.mark, what, gap, AXIS_TOLERANCE, "mm", remedy)
+        for bolt in shell.bolts:
+            if passed[bolt.mark] != 2:
+                remedy = "drill both sibling planks for it"
+                yield Finding("AAG602", "error", bolt.mark, "holes on its axis", passed[bolt.mark], 2, "", remedy)
+
+
+def _bolts_by_joint(shell: Shell) -> dict[str, list[Bolt]]:
+    bolts = {bolt.mark: bolt for bolt in shell.bolts}
+    return {joint.mark: [bolts[mark] for mark in joint.fasteners if mark in bolts] for joint in shell.joints}
+
+
+def _axis_distance(bolt: Bolt, point: Floats) -> float:
+    return float(np.linalg.norm(np.cross(point - np.array(bolt.frame.origin), np.array(bolt.frame.z))))
+
+
+CHECKS: tuple[Check, ...] = (
+    forming_findings,
+    hole_findings,
+    end_findings,
+    clash_findings,
+    joint_findings,
+    bolt_findings,
+)
+_ORDER = {"error": 0, "warning": 1, "note": 2}
+
+
+def audit(design: Design, gridshell: Gridshell) -> list[Finding]:
+    """Return the findings of all checks, errors first, then by code and mark."""
+    found = [finding for check in CHECKS for finding in check(design, gridshell)]
+    return sorted(found, key=lambda f: (_ORDER[f.severity], f.code, f.mark, f.what))

@@ -1,0 +1,202 @@
+"""Where solids of different parts run into each other, and how deep."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from aag_cad.parts.forming import blank_points, formed_points
+from aag_cad.parts.mesh import frame_matrix, product_mesh
+from aag_cad.parts.model import Bolt, CouplingBlock, Frame, Part, Plank, Screw, Shell, Stud, shell_parts
+from aag_cad.parts.products import part_frame, product_key
+from aag_cad.units import Floats, Vector, vector
+
+_FACE_SPACING = 12.0
+_EDGE_SPACING = 4.0
+_STRETCH = 250.0
+
+
+@dataclass(frozen=True)
+class Clash:
+    """Two parts of which one reaches into the other: the marks, the depth in mm and the deepest point."""
+
+    first: str
+    second: str
+    depth: float
+    point: Vector
+
+
+@dataclass(frozen=True, eq=False)
+class _Piece:
+    """A part, or a stretch of a plank: points on its surface (n, 3) and their box (2, 3), vault coordinates."""
+
+    body: int
+    points: Floats
+    box: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """A part, the shell it belongs to, and the matrix (4, 4) from product to vault coordinates."""
+
+    part: Part
+    shell: int
+    matrix: Floats
+
+
+def _grid(length: float, spacing: float) -> Floats:
+    return np.linspace(-length / 2.0, length / 2.0, max(2, int(np.ceil(length / spacing)) + 1))
+
+
+def _box_points(length: float, width: float, thickness: float) -> Floats:
+    """Return points on the surface of a box about the origin, closer along its long edges."""
+    x, y, z = _grid(length, _FACE_SPACING), _grid(width, _FACE_SPACING), _grid(thickness, _FACE_SPACING)
+    faces = [
+        np.stack(np.meshgrid(x, y, z[[0, -1]], indexing="ij"), axis=-1).reshape(-1, 3),
+        np.stack(np.meshgrid(x, y[[0, -1]], z, indexing="ij"), axis=-1).reshape(-1, 3),
+        np.stack(np.meshgrid(x[[0, -1]], y, z, indexing="ij"), axis=-1).reshape(-1, 3),
+        np.stack(np.meshgrid(_grid(length, _EDGE_SPACING), y[[0, -1]], z[[0, -1]], indexing="ij"), axis=-1).reshape(
+            -1, 3
+        ),
+    ]
+    return np.concatenate(faces)
+
+
+def _surface_points(part: Part) -> Floats:
+    """Return points on the surface of a part in product coordinates, (n, 3)."""
+    if isinstance(part, Plank):
+        section = part.blank.section
+        points = _box_points(part.blank.length, section.width, section.thickness)
+        return formed_points(part, points + np.array([part.blank.length / 2.0, 0.0, 0.0]))
+    if isinstance(part, CouplingBlock):
+        return _box_points(part.length, part.width, part.thickness)
+    mesh = product_mesh(part)
+    low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
+    ring = mesh.vertices[np.isclose(mesh.vertices[:, 2], low)]
+    heights = np.linspace(low, high, max(2, int((high - low) / _FACE_SPACING) + 1))
+    walls = np.concatenate([ring[:, :2]] * len(heights))
+    return np.concatenate([np.column_stack([walls, np.repeat(heights, len(ring))]), mesh.vertices])
+
+
+def _bolt_depth(bolt: Bolt, points: Floats) -> Floats:
+    radius, height = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
+    t = bolt.washer_thickness
+
+    def piece(size: float, low: float, high: float) -> Floats:
+        return np.asarray(np.minimum.reduce([size / 2.0 - radius, height - low, high - height]))
+
+    pieces = (
+        piece(bolt.across_flats, -t - bolt.head_height, -t),
+        piece(bolt.washer_diameter, -t, 0.0),
+        piece(bolt.diameter, 0.0, bolt.length - t),
+        piece(bolt.washer_diameter, bolt.grip, bolt.grip + t),
+        piece(bolt.across_flats, bolt.grip + t, bolt.grip + t + bolt.nut_height),
+    )
+    return np.asarray(np.maximum.reduce(pieces))
+
+
+def _depth(part: Part, points: Floats) -> Floats:
+    """Return how deep points (n, 3) in product coordinates lie inside a part, mm, (n,); negative outside."""
+    if isinstance(part, Plank):
+        x, y, z = blank_points(part, points).T
+        half_width, half_thickness = part.blank.section.width / 2.0, part.blank.section.thickness / 2.0
+        sides = [x, part.blank.length - x, half_width - np.abs(y), half_thickness - np.abs(z)]
+        return np.asarray(np.minimum.reduce(sides))
+    if isinstance(part, CouplingBlock):
+        size = np.array([part.length, part.width, part.thickness]) / 2.0
+        return np.asarray((size - np.abs(points)).min(axis=1))
+    if isinstance(part, Stud):
+        angles = np.arange(6) * np.pi / 3.0
+        flats = points[:, :2] @ np.array([np.cos(angles), np.sin(angles)])
+        ends = part.length / 2.0 - np.abs(points[:, 2])
+        return np.asarray(np.minimum(part.across_flats / 2.0 - flats.max(axis=1), ends))
+    if isinstance(part, Bolt):
+        return _bolt_depth(part, points)
+    if isinstance(part, Screw):
+        inside = part.diameter / 2.0 - np.hypot(points[:, 0], points[:, 1])
+        return np.asarray(np.minimum.reduce([inside, points[:, 2], part.length - points[:, 2]]))
+    raise NotImplementedError(f"{part.mark}: parts of this kind are not placed yet")
+
+
+def _body(part: Part, shell: int, placement: Frame) -> _Body:
+    matrix = frame_matrix(placement)
+    if (frame := part_frame(part)) is not None:
+        matrix = matrix @ frame_matrix(frame)
+    return _Body(part, shell, matrix)
+
+
+def _pieces(index: int, body: _Body) -> Iterator[_Piece]:
+    """Yield a part's surface points, a plank in stretches of about 250 mm so that boxes stay tight."""
+    points = _surface_points(body.part)
+    groups = [points]
+    if isinstance(body.part, Plank):
+        curve = body.part.curve
+        ends = curve.points[[0, -1]]
+        order = np.argsort(points @ (ends[1] - ends[0]), kind="stable")
+        groups = np.array_split(points[order], max(1, round(curve.length / _STRETCH)))
+    for group in groups:
+        moved = group @ body.matrix[:3, :3].T + body.matrix[:3, 3]
+        yield _Piece(index, moved, np.array([moved.min(axis=0), moved.max(axis=0)]))
+
+
+def _near_pairs(boxes: Floats) -> Iterator[tuple[int, int]]:
+    """Yield the index pairs of overlapping boxes (n, 2, 3), by a sweep along x."""
+    order = np.argsort(boxes[:, 0, 0], kind="stable")
+    low, high = boxes[order, 0], boxes[order, 1]
+    for i in range(len(order)):
+        last = int(np.searchsorted(low[:, 0], high[i, 0], side="right"))
+        inside = np.all((low[i + 1 : last] < high[i]) & (high[i + 1 : last] > low[i]), axis=1)
+        for j in np.nonzero(inside)[0]:
+            yield int(order[i]), int(order[i + 1 + j])
+
+
+def _own_pairs(shells: list[Shell]) -> set[tuple[str, str]]:
+    """Return (fastener, member) for every bolt and screw and the members of its own joint."""
+    return {
+        (fastener, member)
+        for shell in shells
+        for joint in shell.joints
+        for fastener in joint.fasteners
+        for member in joint.members
+    }
+
+
+def _repeated(shells: list[Shell]) -> set[int]:
+    """Return the indices of shells that are equal to the first, so that their inside need not be looked at again."""
+    keys = [tuple((product_key(part), part_frame(part)) for part in shell_parts(shell)) for shell in shells]
+    return {i for i in range(1, len(shells)) if keys[i] == keys[0]}
+
+
+def clashes(shells: Iterable[Shell], limit: float) -> list[Clash]:
+    """Return the pairs of parts that reach more than ``limit`` mm into each other, deepest first, vault coordinates.
+
+    Broad phase by bounding boxes; then points on each surface (every 12 mm, along edges every 4 mm) are taken into the
+    other part's own coordinates, where their depth is exact. A bolt or screw belongs into the members of its own joint
+    and is not held against them.
+    """
+    listed = list(shells)
+    own, repeated = _own_pairs(listed), _repeated(listed)
+    bodies = [_body(part, i, shell.placement) for i, shell in enumerate(listed) for part in shell_parts(shell)]
+    pieces = [piece for index, body in enumerate(bodies) for piece in _pieces(index, body)]
+    inside: dict[int, list[tuple[int, Floats]]] = defaultdict(list)
+    for i, j in _near_pairs(np.array([piece.box for piece in pieces])):
+        a, b = bodies[pieces[i].body], bodies[pieces[j].body]
+        marks = (a.part.mark, b.part.mark)
+        if a is b or marks in own or marks[::-1] in own or (a.shell == b.shell and a.shell in repeated):
+            continue
+        for one, other in ((pieces[i], pieces[j]), (pieces[j], pieces[i])):
+            near = one.points[np.all((one.points > other.box[0]) & (one.points < other.box[1]), axis=1)]
+            if len(near):
+                inside[other.body].append((one.body, near))
+    deepest: dict[tuple[int, int], Clash] = {}
+    for index, groups in sorted(inside.items()):
+        body, points = bodies[index], np.concatenate([group for _, group in groups])
+        owners = np.repeat([owner for owner, _ in groups], [len(group) for _, group in groups])
+        depths = _depth(body.part, (points - body.matrix[:3, 3]) @ body.matrix[:3, :3])
+        for k in np.nonzero(depths > limit)[0]:
+            pair = (min(index, int(owners[k])), max(index, int(owners[k])))
+            if pair not in deepest or deepest[pair].depth < depths[k]:
+                first, second = (bodies[i].part.mark for i in pair)
+                deepest[pair] = Clash(first, second, float(depths[k]), vector(points[k]))
+    return sorted(deepest.values(), key=lambda clash: (-clash.depth, clash.first, clash.second))

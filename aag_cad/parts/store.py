@@ -1,0 +1,88 @@
+"""gridshell.json: the gridshell written and read back to an equal object."""
+
+import json
+from dataclasses import MISSING, fields, is_dataclass
+from functools import cache
+from typing import Any, Literal, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from aag_cad.errors import FileError
+from aag_cad.geometry.framed import FramedCurve
+from aag_cad.parts.model import SCHEMA_VERSION, Gridshell
+
+_hints = cache(get_type_hints)
+
+
+def _plain(value: Any) -> Any:
+    """Return lists, dicts, numbers and texts for a model value."""
+    if isinstance(value, FramedCurve):
+        return {name: getattr(value, name).tolist() for name in ("stations", "points", "normals")}
+    if is_dataclass(value):
+        return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    return value
+
+
+def _curve(data: Any, path: str) -> FramedCurve:
+    try:
+        arrays = {name: np.array(data[name], dtype=float) for name in ("stations", "points", "normals")}
+    except (KeyError, TypeError, ValueError) as error:
+        raise FileError(f"{path}: not a curve of stations, points and normals: {error}") from error
+    count = arrays["stations"].size
+    if arrays["stations"].shape != (count,) or any(arrays[k].shape != (count, 3) for k in ("points", "normals")):
+        raise FileError(f"{path}: {count} stations need as many points and normals of three numbers each")
+    return FramedCurve(**arrays)
+
+
+def _read(kind: Any, data: Any, path: str) -> Any:
+    """Return the value of a type from plain data; FileError with the path of what does not fit."""
+    if kind is FramedCurve:
+        return _curve(data, path)
+    if is_dataclass(kind) and isinstance(kind, type):
+        if not isinstance(data, dict):
+            raise FileError(f"{path}: expected an object, found {type(data).__name__}")
+        hints = _hints(kind)
+        unknown = sorted(set(data) - set(hints))
+        missing = sorted(f.name for f in fields(kind) if f.name not in data and f.default is MISSING)
+        if unknown or missing:
+            raise FileError(f"{path}: unknown keys {unknown}, missing keys {missing}")
+        return kind(**{name: _read(hints[name], data[name], f"{path}.{name}") for name in hints if name in data})
+    origin, args = get_origin(kind), get_args(kind)
+    if origin is tuple:
+        if not isinstance(data, list):
+            raise FileError(f"{path}: expected a list, found {type(data).__name__}")
+        kinds = [args[0]] * len(data) if args[1:] == (Ellipsis,) else list(args)
+        if len(kinds) != len(data):
+            raise FileError(f"{path}: expected {len(kinds)} values, found {len(data)}")
+        return tuple(_read(k, item, f"{path}[{i}]") for i, (k, item) in enumerate(zip(kinds, data, strict=True)))
+    if origin is Literal:
+        if data not in args:
+            raise FileError(f"{path}: {data!r} is none of {', '.join(map(repr, args))}")
+        return data
+    if kind is float and isinstance(data, int | float) and not isinstance(data, bool):
+        return float(data)
+    if type(data) is not kind:
+        raise FileError(f"{path}: expected {kind.__name__}, found {data!r}")
+    return data
+
+
+def gridshell_json(gridshell: Gridshell) -> str:
+    """Return the gridshell as JSON text, mm, every number with all its digits."""
+    return json.dumps(_plain(gridshell), separators=(",", ":")) + "\n"
+
+
+def read_gridshell(text: str) -> Gridshell:
+    """Return the gridshell in a JSON text; FileError with the path in the file where it does not fit."""
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise FileError(f"gridshell.json: not valid JSON: {error}") from error
+    version = data.get("schema_version") if isinstance(data, dict) else None
+    if version != SCHEMA_VERSION:
+        raise FileError(
+            f"gridshell.json: schema_version {version!r}, this program reads {SCHEMA_VERSION}; build the design again"
+        )
+    gridshell: Gridshell = _read(Gridshell, data, "gridshell")
+    return gridshell
