@@ -150,7 +150,7 @@ def bolt_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
                 continue
             centres = formed_points(plank, np.array([[hole.station, hole.offset, 0.0] for hole in holes]))
             for hole, centre in zip(holes, centres, strict=True):
-                gap, mark = min(((_axis_distance(bolt, centre), bolt.mark) for bolt in bolts[hole.joint]))
+                gap, mark = min((_axis_distance(bolt, centre), bolt.mark) for bolt in bolts[hole.joint])
                 passed[mark] += 1
                 if gap > AXIS_TOLERANCE:
                     what = f"hole at station {hole.station:.1f} mm off the axis of {mark} by"

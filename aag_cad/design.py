@@ -227,7 +227,7 @@ class Design(Section):
             ),
             (
                 self.joints.bolt_hole < 2 * self.joints.bolt_offset,
-                f"joints.bolt_offset: {self.joints.bolt_offset:g} mm lets the two holes of {self.joints.bolt_hole:g} mm "
+                f"joints.bolt_offset: {self.joints.bolt_offset:g} mm lets two holes of {self.joints.bolt_hole:g} mm "
                 "run into each other; make it larger",
             ),
             (

@@ -1,11 +1,52 @@
-"""The whole way from a design to the files."""
+"""The whole way in one place: design -> surface -> web -> curves -> parts -> findings and plan -> files."""
 
+import os
+import tempfile
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from aag_cad.audit import Finding, audit
 from aag_cad.design import CatenoidSurface, CrpcSurface, Design, HyperboloidSurface, SplineSurface
+from aag_cad.errors import DesignError, FileError
 from aag_cad.geometry.profiles import CrpcProfile, HyperboloidProfile, Profile, SplineProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.network.build import shell_network
+from aag_cad.network.extent import ShellExtent, shell_extent
+from aag_cad.network.ridge import ridge_coordinate
 from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.model import Gridshell
+from aag_cad.web.quality import WebQuality, quality
+from aag_cad.web.web import Web, crpc_web, sampled_web
+
+if TYPE_CHECKING:
+    from assembly.plan import Plan
+
+Report = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Model:
+    """A design worked out: the measures of its web and of its curves, and the gridshell."""
+
+    design: Design
+    web: WebQuality
+    extent: ShellExtent
+    gridshell: Gridshell
+
+
+@dataclass(frozen=True)
+class Build:
+    """A model with its findings, its assembly plan, and the summary that was written beside the files."""
+
+    model: Model
+    findings: tuple[Finding, ...]
+    plan: "Plan"
+    summary: dict[str, Any]
 
 
 def profile_of(design: Design) -> Profile:
@@ -26,6 +67,169 @@ def chart_of(design: Design) -> AsymptoticChart:
     return AsymptoticChart(RevolutionSurface(profile_of(design), -design.shells.axis_distance))
 
 
+def web_of(design: Design, chart: AsymptoticChart) -> Web:
+    """Return the web over the sector, from one step under the ground line to the crown, in half steps of the pattern.
+
+    On a CRPC surface it is the exact discrete web, on others the smooth chart is sampled.
+    """
+    step = design.step / 2.0
+    rows = int(np.ceil(ridge_coordinate(chart, 0.0, design.shells.count, 0.0) / step))
+    columns = 2 * (design.pattern.geodesics - 1)
+    theta = np.linspace(-design.half_sector, design.half_sector, columns + 1)
+    profile = chart.surface.profile
+    if isinstance(profile, CrpcProfile):
+        return crpc_web(profile.neck_radius, profile.ratio, chart.surface.axis_x, theta, 2, rows)
+    return sampled_web(chart, np.arange(rows + 1) * step, theta)
+
+
+def model_of(design: Design, report: Report = lambda stage: None) -> Model:
+    """Return a design worked out to its gridshell; SurfaceError, NetworkError or DesignError where it cannot be."""
+    report("web")
+    chart = chart_of(design)
+    measures = quality(web_of(design, chart))
+    report("curves")
+    network = shell_network(design, chart)
+    extent = shell_extent(design, chart, network)
+    report("parts")
+    return Model(design, measures, extent, gridshell_from(design, network))
+
+
 def gridshell_of(design: Design) -> Gridshell:
     """Return the gridshell of a design: design -> surface -> curves -> parts."""
-    return gridshell_from(design, shell_network(design, chart_of(design)))
+    return model_of(design).gridshell
+
+
+def _write_gridshell(model: Model, _plan: "Plan", folder: Path) -> None:
+    from aag_cad.export.files import write_text
+    from aag_cad.parts.store import gridshell_json
+
+    write_text(folder / "gridshell.json", gridshell_json(model.gridshell))
+
+
+def _write_step(model: Model, _plan: "Plan", folder: Path) -> None:
+    from aag_cad.export.step import write_step
+
+    write_step(model.gridshell, folder / f"{model.gridshell.name}.step")
+
+
+def _write_ifc(model: Model, _plan: "Plan", folder: Path) -> None:
+    from aag_cad.export.ifc import write_ifc
+
+    write_ifc(model.gridshell, folder / f"{model.gridshell.name}.ifc")
+
+
+def _write_glb(model: Model, _plan: "Plan", folder: Path) -> None:
+    from aag_cad.export.gltf import write_glb
+
+    write_glb(model.gridshell, folder / f"{model.gridshell.name}.glb")
+
+
+def _write_tables(model: Model, _plan: "Plan", folder: Path) -> None:
+    from aag_cad.export.tables import write_checks_table, write_holes_table, write_parts_table
+
+    write_parts_table(model.gridshell, folder / "tables" / "parts.csv")
+    write_holes_table(model.gridshell, folder / "tables" / "holes.csv")
+    write_checks_table(model.gridshell, folder / "tables" / "checks.csv")
+
+
+def _write_plan(_model: Model, plan: "Plan", folder: Path) -> None:
+    from assembly.plan import plan_json
+
+    from aag_cad.export.files import write_text
+
+    write_text(folder / "plan.json", plan_json(plan))
+
+
+def _write_sequence(model: Model, plan: "Plan", folder: Path) -> None:
+    from assembly.printout import write_sequence
+
+    write_sequence(plan, model.gridshell, folder / "sequence.pdf")
+
+
+def _write_overview(model: Model, _plan: "Plan", folder: Path) -> None:
+    from aag_cad.export.overview import write_overview
+
+    write_overview(model.gridshell, folder / "overview.svg", folder / "overview.png")
+
+
+OUTPUTS: dict[str, Callable[[Model, "Plan", Path], None]] = {
+    "gridshell": _write_gridshell,
+    "step": _write_step,
+    "ifc": _write_ifc,
+    "glb": _write_glb,
+    "tables": _write_tables,
+    "plan": _write_plan,
+    "sequence": _write_sequence,
+    "overview": _write_overview,
+}
+MODEL_STAGES = ("web", "curves", "parts", "audit", "assembly")
+
+
+def chosen_outputs(only: Iterable[str]) -> tuple[str, ...]:
+    """Return the outputs to write, all if none is named; DesignError naming what is not an output."""
+    wanted = list(only)
+    unknown = sorted(set(wanted) - set(OUTPUTS))
+    if unknown:
+        raise DesignError(f"--only: no output called {', '.join(unknown)}; there are {', '.join(OUTPUTS)}")
+    return tuple(name for name in OUTPUTS if not wanted or name in wanted)
+
+
+def _staging(folder: Path) -> "tempfile.TemporaryDirectory[str]":
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        return tempfile.TemporaryDirectory(prefix=".aag-", dir=folder)
+    except OSError as error:
+        raise FileError(
+            f"{folder}: cannot be written: {error.strerror}; name a folder that is yours with -o"
+        ) from error
+
+
+def _files_below(folder: Path) -> list[str]:
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
+
+
+def _publish(staging: Path, folder: Path) -> None:
+    """Move all files from the staging folder to their places."""
+    for name in _files_below(staging):
+        target = folder / name
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            os.replace(staging / name, target)
+        except OSError as error:
+            raise FileError(f"{target}: cannot be written: {error.strerror}") from error
+
+
+def build(design: Design, folder: Path, only: Iterable[str] = (), report: Report = lambda stage: None) -> Build:
+    """Build a design into a folder and return what was built.
+
+    Every file is written into a temporary folder first and moved when all are whole, so that an error leaves nothing
+    behind. ``report`` is called with the name of each stage as it begins. FileError if the folder cannot be written.
+    """
+    from assembly.plan import plan_of
+
+    from aag_cad.export.summary import summary_of, write_summary
+
+    outputs = chosen_outputs(only)
+    begun: list[tuple[str, float]] = []
+
+    def begin(stage: str) -> None:
+        begun.append((stage, time.perf_counter()))
+        report(stage)
+
+    with _staging(folder) as name:
+        staging = Path(name)
+        model = model_of(design, begin)
+        begin("audit")
+        findings = tuple(audit(design, model.gridshell))
+        begin("assembly")
+        plan = plan_of(model.gridshell, design.crew.people, design.crew.lift_limit)
+        for output in outputs:
+            begin(output)
+            OUTPUTS[output](model, plan, staging)
+        ends = [start for _, start in begun[1:]] + [time.perf_counter()]
+        seconds = {stage: end - start for (stage, start), end in zip(begun, ends, strict=True)}
+        sizes = {path: (staging / path).stat().st_size for path in _files_below(staging)}
+        summary = summary_of(model.gridshell, model.web, model.extent, findings, plan, sizes, seconds)
+        write_summary(summary, staging / "summary.json")
+        _publish(staging, folder)
+    return Build(model, findings, plan, summary)

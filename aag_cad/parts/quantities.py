@@ -44,6 +44,11 @@ def material(part: Part) -> Material:
     return _KINDS[type(part)][1]
 
 
+def material_name(part: Part, timber: Timber) -> str:
+    """Return the material as it is ordered, e.g. ``ash D50`` or ``steel``."""
+    return f"{timber.species} {timber.strength_class}" if material(part) == "timber" else material(part)
+
+
 def hole_count(part: Part) -> int:
     """Return how many holes are drilled in a part."""
     match part:

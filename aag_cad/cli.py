@@ -1,0 +1,226 @@
+"""The ``aag`` command; heavy imports happen inside the commands."""
+
+import json
+import os
+import sys
+import tomllib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Any, ParamSpec
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from aag_cad import __version__
+from aag_cad.errors import AagError, FileError
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help="Strained timber gridshells from straight planks: design, fabrication files, assembly plan.",
+)
+_P = ParamSpec("_P")
+_USER_ERROR = 2
+_MOST_ROWS = 12
+
+DesignName = Annotated[str, typer.Argument(metavar="DESIGN", help="a design file (TOML) or a shipped name: vault")]
+Folder = Annotated[Path | None, typer.Option("-o", "--output", help="folder for the files; default: the design's name")]
+AsJson = Annotated[bool, typer.Option("--json", help="print the summary as JSON and nothing else")]
+
+
+def _user_errors(command: Callable[_P, None]) -> Callable[_P, None]:
+    """Print what a user can mend as one message and leave with exit code 2."""
+
+    @wraps(command)
+    def run(*args: _P.args, **kwargs: _P.kwargs) -> None:
+        try:
+            command(*args, **kwargs)
+        except AagError as error:
+            print(f"aag: {error}", file=sys.stderr)
+            raise typer.Exit(_USER_ERROR) from None
+
+    return run
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        print(f"aag {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def main(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="print the version")
+    ] = False,
+) -> None:
+    """Take the options that stand before a command."""
+
+
+@contextmanager
+def _progress(stages: int, quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Yield the function that is called with the name of each stage as it begins."""
+    if quiet:
+        yield lambda stage: None
+        return
+    columns = (TextColumn("{task.description:<10}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True)) as bar:
+        task = bar.add_task("start", total=stages, completed=-1)
+        yield lambda stage: bar.update(task, advance=1, description=stage)
+        bar.update(task, completed=stages, description="done")
+
+
+def _findings_table(findings: list[dict[str, Any]]) -> Table:
+    """Return one row per kind of finding: how many, and the worst in full."""
+    table = Table(title="Findings", title_justify="left", show_lines=False)
+    for column in ("code", "severity", "count", "the furthest from what is allowed"):
+        table.add_column(column)
+    kinds: dict[tuple[str, str, str], list[dict[str, Any]]] = {}
+    for finding in findings:
+        kinds.setdefault((finding["severity"], finding["code"], finding["what"]), []).append(finding)
+    for (severity, code, _), group in list(kinds.items())[:_MOST_ROWS]:
+        worst = max(group, key=lambda f: abs(f["found"] - f["allowed"]))
+        table.add_row(code, severity, str(len(group)), worst["text"])
+    if len(kinds) > _MOST_ROWS:
+        table.caption = f"and {len(kinds) - _MOST_ROWS} more kinds"
+    return table
+
+
+def _files_table(files: dict[str, int], folder: Path) -> Table:
+    table = Table(title=f"Files in {folder}", title_justify="left")
+    table.add_column("file")
+    table.add_column("kB", justify="right")
+    for name, size in files.items():
+        table.add_row(name, f"{size / 1000:.0f}")
+    table.add_row("summary.json", "")
+    return table
+
+
+def _key_figures(summary: dict[str, Any]) -> str:
+    figures, number = summary["figures"], summary["counts"]
+    mass = summary["mass_per_shell_kg"]["S1"]
+    return (
+        f"{summary['title']}: {number['shells']} shells, {number['coupled beams']} coupled beams, "
+        f"{number['planks']} planks, {figures['plan_area_m2']:.2f} m2 in plan, "
+        f"crown {figures['crown_height_mm']:.0f} mm\n"
+        f"smallest bending radius {figures['smallest_bending_radius_mm']:.0f} mm, "
+        f"largest twist {figures['largest_twist_deg_per_m']:.1f} deg/m, "
+        f"per shell {mass['all timber']:.0f} kg timber and {mass['all steel']:.0f} kg steel"
+    )
+
+
+@app.command()
+@_user_errors
+def build(
+    design: DesignName,
+    output: Folder = None,
+    only: Annotated[
+        str, typer.Option(help="comma-separated: gridshell,step,ifc,glb,tables,plan,sequence,overview")
+    ] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Build a design into a folder of STEP, IFC, tables, assembly plan and pictures."""
+    from aag_cad.design import load_design
+
+    read = load_design(design)
+    from aag_cad.pipeline import MODEL_STAGES, chosen_outputs
+    from aag_cad.pipeline import build as run
+
+    wanted = [name.strip() for name in only.split(",") if name.strip()]
+    stages = len(MODEL_STAGES) + len(chosen_outputs(wanted))
+    folder = output or Path(read.project.name)
+    with _progress(stages, as_json) as report:
+        summary = run(read, folder, wanted, report).summary
+    if as_json:
+        print(json.dumps(summary, indent=1, ensure_ascii=False))
+        return
+    console = Console()
+    console.print(_key_figures(summary), highlight=False)
+    console.print(_findings_table(summary["findings"]))
+    console.print(_files_table(summary["files"], folder))
+
+
+@app.command()
+@_user_errors
+def check(design: DesignName, as_json: AsJson = False) -> None:
+    """Audit a design without writing files; exit code 1 if there is a finding of severity error."""
+    from dataclasses import asdict
+
+    from aag_cad.design import load_design
+
+    read = load_design(design)
+    from aag_cad.audit import audit
+    from aag_cad.pipeline import gridshell_of
+
+    with _progress(2, as_json) as report:
+        report("parts")
+        gridshell = gridshell_of(read)
+        report("audit")
+        findings = [{**asdict(finding), "text": finding.text} for finding in audit(read, gridshell)]
+    if as_json:
+        print(json.dumps(findings, indent=1, ensure_ascii=False))
+    else:
+        console = Console()
+        console.print(_findings_table(findings))
+    errors = sum(finding["severity"] == "error" for finding in findings)
+    if errors:
+        print(f"aag: {errors} errors in {design}", file=sys.stderr)
+        raise typer.Exit(1)
+
+
+@app.command()
+@_user_errors
+def plan(design: DesignName, output: Folder = None, as_json: AsJson = False) -> None:
+    """Plan the assembly: plan.json and the printed sequence."""
+    from aag_cad.design import load_design
+
+    read = load_design(design)
+    from aag_cad.pipeline import MODEL_STAGES
+    from aag_cad.pipeline import build as run
+
+    folder = output or Path(read.project.name)
+    with _progress(len(MODEL_STAGES) + 2, as_json) as report:
+        built = run(read, folder, ("plan", "sequence"), report)
+    if as_json:
+        from assembly.plan import plan_json
+
+        print(plan_json(built.plan), end="")
+        return
+    Console().print(_files_table(built.summary["files"], folder))
+
+
+@app.command()
+@_user_errors
+def new(
+    name: Annotated[str, typer.Argument(help="name of the new design: small letters, digits, - and _")],
+    template: Annotated[str, typer.Option(help="the shipped design to start from")] = "vault",
+) -> None:
+    """Write NAME.toml, a commented copy of a shipped design, to edit."""
+    from aag_cad.design import design_text, parse_design
+
+    text, _ = design_text(template)
+    shipped = tomllib.loads(text)["project"]["name"]
+    text = text.replace(f'name = "{shipped}"', f'name = "{name}"', 1)
+    parse_design(text, f"aag new {name}")
+    path = Path(f"{name}.toml")
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        raise FileError(
+            f"{path}: not written: {os.strerror(error.errno or 0)}; choose another name or folder"
+        ) from error
+    print(f"{path} written; build it with: aag build {path}")
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of the design file."""
+    from aag_cad.design import Design
+
+    print(json.dumps(Design.model_json_schema(), indent=1))

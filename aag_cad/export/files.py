@@ -1,0 +1,44 @@
+"""Files that are written whole or not at all."""
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from aag_cad.errors import FileError
+
+
+@contextmanager
+def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Yield a path in a temporary folder beside ``path``, then move what was written there to ``path``.
+
+    Missing folders are made. If the block raises, ``path`` stays as it was; FileError if it cannot be written.
+    """
+    target = Path(path)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".writing-", dir=target.parent) as folder:
+            # The name is kept because some writers choose the format by it or print it in the header.
+            draft = Path(folder) / target.name
+            yield draft
+            os.replace(draft, target)
+    except FileError:
+        raise
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise FileError(
+            f"{target}: cannot be written ({reason}); choose a folder that you may write to, with free space, "
+            "and close the file in other programs"
+        ) from error
+
+
+def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
+    """Write bytes to a file as a whole; FileError if it cannot be written."""
+    with replacing(path) as draft:
+        draft.write_bytes(data)
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write text to a file as a whole, in UTF-8 with the line ends that it has; FileError if it cannot be written."""
+    write_bytes(path, text.encode("utf-8"))

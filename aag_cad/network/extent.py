@@ -1,0 +1,69 @@
+"""Figures of one shell and its curves: plan area, crown, smallest radius, largest twist."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from aag_cad.design import Design
+from aag_cad.geometry.framed import curvatures_at
+from aag_cad.geometry.revolution import AsymptoticChart
+from aag_cad.network.model import CurveNetwork, Family
+from aag_cad.network.ridge import ridge_coordinate, surface_points
+
+_SECTORS = 40
+
+
+@dataclass(frozen=True)
+class ShellExtent:
+    """Plan area of one shell up to the ridge planes (mm2), heights over the ground line and curve figures (mm, rad/mm).
+
+    Radii are those of the weak bending: geodesic curvature of A curves, normal curvature of G and E curves.
+    """
+
+    plan_area: float
+    crown_height: float
+    entry_height: float
+    smallest_radius: dict[Family, float]
+    largest_twist: dict[Family, float]
+
+
+def plan_area(design: Design, chart: AsymptoticChart) -> float:
+    """Return the area in plan between the ground line and the ridge planes of one shell, mm2, by Gauss-Legendre."""
+    nodes, weights = np.polynomial.legendre.leggauss(_SECTORS)
+    half = design.half_sector
+    # The ridge bends at the crown, so each half of the sector is integrated on its own; the shell is symmetric.
+    angles = half / 2.0 * (nodes + 1.0)
+    axis = chart.surface.axis_x
+
+    def radius(s: float, theta: float) -> float:
+        x, y, _z = surface_points(chart, np.array([s]), np.array([theta]))[0]
+        return float(np.hypot(x - axis, y))
+
+    outer = np.array([radius(ridge_coordinate(chart, float(t), design.shells.count, 0.0), float(t)) for t in angles])
+    inner = radius(0.0, 0.0)
+    return float(2.0 * half / 2.0 * (weights @ (outer**2 - inner**2)) / 2.0)
+
+
+def shell_extent(design: Design, chart: AsymptoticChart, network: CurveNetwork) -> ShellExtent:
+    """Return the figures of a shell; curves are measured between their outermost joints, ends not counted."""
+    radii: dict[Family, float] = {}
+    twists: dict[Family, float] = {}
+    for item in network.curves:
+        family = item.id.family
+        joints = [
+            station
+            for crossing in network.crossings
+            for curve, station in zip(crossing.curves, crossing.stations, strict=True)
+            if curve == item.id
+        ]
+        stations = np.linspace(min(joints), max(joints), 400)
+        curvatures = curvatures_at(item.curve, stations)
+        weak = curvatures.geodesic if family in ("A1", "A2") else curvatures.normal
+        radii[family] = min(radii.get(family, np.inf), float(1.0 / max(np.abs(weak).max(), 1e-12)))
+        twists[family] = max(twists.get(family, 0.0), float(np.abs(curvatures.torsion).max()))
+    count, half = design.shells.count, design.half_sector
+    heights = [
+        float(surface_points(chart, np.array([ridge_coordinate(chart, t, count, 0.0)]), np.array([t]))[0, 2])
+        for t in (0.0, half)
+    ]
+    return ShellExtent(plan_area(design, chart), heights[0], heights[1], radii, twists)
