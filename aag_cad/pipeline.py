@@ -79,7 +79,7 @@ def web_of(design: Design, chart: AsymptoticChart) -> Web:
     profile = chart.surface.profile
     if isinstance(profile, CrpcProfile):
         return crpc_web(profile.neck_radius, profile.ratio, chart.surface.axis_x, theta, 2, rows)
-    return sampled_web(chart, np.arange(rows + 1) * step, theta)
+    return sampled_web(chart, step * np.arange(rows + 1, dtype=np.float64), np.asarray(theta, dtype=np.float64))
 
 
 def model_of(design: Design, report: Report = lambda stage: None) -> Model:
@@ -133,9 +133,8 @@ def _write_tables(model: Model, _plan: "Plan", folder: Path) -> None:
 
 
 def _write_plan(_model: Model, plan: "Plan", folder: Path) -> None:
-    from assembly.plan import plan_json
-
     from aag_cad.export.files import write_text
+    from assembly.plan import plan_json
 
     write_text(folder / "plan.json", plan_json(plan))
 
@@ -205,9 +204,8 @@ def build(design: Design, folder: Path, only: Iterable[str] = (), report: Report
     Every file is written into a temporary folder first and moved when all are whole, so that an error leaves nothing
     behind. ``report`` is called with the name of each stage as it begins. FileError if the folder cannot be written.
     """
-    from assembly.plan import plan_of
-
     from aag_cad.export.summary import summary_of, write_summary
+    from assembly.plan import plan_of
 
     outputs = chosen_outputs(only)
     begun: list[tuple[str, float]] = []

@@ -7,8 +7,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from assembly.plan import Plan
-
 from aag_cad.audit import Finding, forming_stresses
 from aag_cad.export.files import write_text
 from aag_cad.network.extent import ShellExtent
@@ -16,6 +14,7 @@ from aag_cad.parts.model import Gridshell, all_parts, shell_parts
 from aag_cad.parts.quantities import kind, mass, material
 from aag_cad.units import MM2_PER_M2, deg_per_m
 from aag_cad.web.quality import WebQuality
+from assembly.plan import Plan
 
 # Section 3.2 of the paper: per shell about 300 kg of timber and 30 kg of steel screws and plates.
 PAPER_MASS_PER_SHELL_KG = {"timber": 300.0, "steel": 30.0}

@@ -49,7 +49,7 @@ def _geodesic_extents(
         extents[curve] = geodesic_extent(design, curves, stops)
         if extents[curve][1] - extents[curve][0] < 2 * design.timber.width:
             raise NetworkError(
-                f"geodesic G-{curve.index:02d}: no length is left between bottom and ridge plank; "
+                f"geodesic G-{curve.number:02d}: no length is left between bottom and ridge plank; "
                 "enlarge shells.axis_distance or narrow shells.sector_deg"
             )
     return extents
@@ -150,7 +150,7 @@ def trimmed_curves(design: Design, curves: dict[CurveId, FramedCurve], crossings
         if name.family == "G":
             start, end = extents[name]
         elif name.family == "E":
-            start, end = 0.0, curve.length if name.index == 1 else _crown_station(design, curve)
+            start, end = 0.0, curve.length if name.number == 1 else _crown_station(design, curve)
         else:
             joints = [_station_on(c, name) for c in _crossings_on(crossings, name)]
             start = joints[0] - _free_overhang(design, curve, name.family, joints[0], -1.0)

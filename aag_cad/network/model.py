@@ -11,10 +11,10 @@ CrossingKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "ridge"]
 
 
 class CurveId(NamedTuple):
-    """Family and index (from 1) of a curve; E 1 is the bottom, E 2 and E 3 are the left and right ridge plank."""
+    """Family and number (from 1) of a curve; E 1 is the bottom, E 2 and E 3 are the left and right ridge plank."""
 
     family: Family
-    index: int
+    number: int
 
 
 @dataclass(frozen=True)

@@ -49,10 +49,10 @@ def _numbered(network: CurveNetwork, shell: int) -> list[tuple[Mark, Crossing]]:
     blocks = sorted(of("AG", "boundary"), key=lambda c: (c.curves[0], c.stations[0]))
     marked = [(Mark(shell, "N", i), c) for i, c in enumerate(nodes, start=1)]
     marked += [(Mark(shell, "K", i), c) for i, c in enumerate(blocks, start=1)]
-    marked += [(Mark(shell, "F", c.curves[0].index), c) for c in of("foot")]
-    last = max(c.curves[0].index for c in of("foot"))
+    marked += [(Mark(shell, "F", c.curves[0].number), c) for c in of("foot")]
+    last = max(c.curves[0].number for c in of("foot"))
     for c in of("ridge"):
-        marked.append((Mark(shell, "R", c.curves[0].index if c.curves[0].family == "G" else last + 1), c))
+        marked.append((Mark(shell, "R", c.curves[0].number if c.curves[0].family == "G" else last + 1), c))
     return marked
 
 

@@ -10,7 +10,7 @@ from aag_cad.network.model import Crossing
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt, wood_screw
 from aag_cad.parts.marks import Mark
 from aag_cad.parts.members import Drilling, beam_axes, curve_mark
-from aag_cad.parts.model import Beam, Bolt, CouplingBlock, CrossHole, Frame, Hole, Joint, Screw, Stud
+from aag_cad.parts.model import Beam, Bolt, CouplingBlock, CrossHole, Frame, Hole, Joint, JointKind, Screw, Stud
 from aag_cad.units import Floats, vector
 
 
@@ -53,7 +53,7 @@ def _stud_direction(directions: list[Floats], normal: Floats) -> Floats:
     second = np.cross(normal, first)
     angles = np.array([np.arctan2(d @ second, d @ first) for d in directions])
     turn = float(np.angle(np.exp(6j * angles).mean())) / 6.0
-    return np.cos(turn) * first + np.sin(turn) * second
+    return np.asarray(np.cos(turn) * first + np.sin(turn) * second)
 
 
 def node_joint(design: Design, mark: Mark, crossing: Crossing, beams: list[Beam], stations: list[float]) -> BuiltJoint:
@@ -61,7 +61,9 @@ def node_joint(design: Design, mark: Mark, crossing: Crossing, beams: list[Beam]
     point, normal = np.array(crossing.point), np.array(crossing.normal)
     across = [beam_axes(beam, station)[2] for beam, station in zip(beams, stations, strict=True)]
     frame = axis_frame(point, normal, _stud_direction(across, normal))
-    bolts, drillings, holes = [], [], []
+    bolts: list[Bolt] = []
+    drillings: list[Drilling] = []
+    holes: list[CrossHole] = []
     for beam, station, direction in zip(beams, stations, across, strict=True):
         for offset in (-design.joints.bolt_offset, design.joints.bolt_offset):
             bolt, drilled = _beam_bolt(design, f"{mark}-B{len(bolts) + 1}", str(mark), beam, station, offset)
@@ -120,5 +122,5 @@ def block_joint(design: Design, mark: Mark, crossing: Crossing, beam: Beam, stat
 def end_joint(mark: Mark, crossing: Crossing) -> BuiltJoint:
     """Return the joint at the end of a flat plank: at the bottom plank (foot) or at a ridge plank (ridge)."""
     members = tuple(curve_mark(mark.shell, curve) for curve in crossing.curves)
-    kind = "foot" if crossing.kind == "foot" else "ridge"
+    kind: JointKind = "foot" if crossing.kind == "foot" else "ridge"
     return BuiltJoint(Joint(str(mark), kind, crossing.point, crossing.normal, members, ()), (), ())

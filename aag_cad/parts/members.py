@@ -31,7 +31,7 @@ class Drilling:
 
 def curve_mark(shell: int, curve: CurveId) -> str:
     """Return the mark of the beam or plank on a curve."""
-    return str(Mark(shell, curve.family, curve.index))
+    return str(Mark(shell, curve.family, curve.number))
 
 
 def _plank(design: Design, mark: str, beam: str, family: Family, curve: FramedCurve) -> Plank:
