@@ -112,10 +112,10 @@ def _write_step(model: Model, _plan: "Plan", folder: Path) -> None:
     write_step(model.gridshell, folder / f"{model.gridshell.name}.step")
 
 
-def _write_ifc(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_ifc(model: Model, plan: "Plan", folder: Path) -> None:
     from aag_cad.export.ifc import write_ifc
 
-    write_ifc(model.gridshell, folder / f"{model.gridshell.name}.ifc")
+    write_ifc(model.gridshell, folder / f"{model.gridshell.name}.ifc", plan.steps)
 
 
 def _write_glb(model: Model, _plan: "Plan", folder: Path) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from aag_cad.parts.fasteners import bolt_pieces
 from aag_cad.parts.forming import blank_points, formed_points
 from aag_cad.parts.mesh import frame_matrix, product_mesh
 from aag_cad.parts.model import Bolt, CouplingBlock, Frame, Part, Plank, Screw, Shell, Stud, shell_parts
@@ -81,18 +82,7 @@ def _surface_points(part: Part) -> Floats:
 
 def _bolt_depth(bolt: Bolt, points: Floats) -> Floats:
     radius, height = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
-    t = bolt.washer_thickness
-
-    def piece(size: float, low: float, high: float) -> Floats:
-        return np.asarray(np.minimum.reduce([size / 2.0 - radius, height - low, high - height]))
-
-    pieces = (
-        piece(bolt.across_flats, -t - bolt.head_height, -t),
-        piece(bolt.washer_diameter, -t, 0.0),
-        piece(bolt.diameter, 0.0, bolt.length - t),
-        piece(bolt.washer_diameter, bolt.grip, bolt.grip + t),
-        piece(bolt.across_flats, bolt.grip + t, bolt.grip + t + bolt.nut_height),
-    )
+    pieces = [np.minimum.reduce([p.size / 2.0 - radius, height - p.low, p.high - height]) for p in bolt_pieces(bolt)]
     return np.asarray(np.maximum.reduce(pieces))
 
 

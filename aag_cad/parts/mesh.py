@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from aag_cad.parts.fasteners import bolt_pieces
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.model import Bolt, CouplingBlock, Frame, Part, Plank, Screw, Stud
 from aag_cad.parts.products import part_frame
@@ -84,20 +85,12 @@ def round_polygon(diameter: float) -> Floats:
 
 
 def _bolt_mesh(bolt: Bolt) -> Mesh:
-    head, washer = regular_polygon(6, bolt.across_flats), round_polygon(bolt.washer_diameter)
-    t, shank = bolt.washer_thickness, round_polygon(bolt.diameter)
-    nut = bolt.grip + t
-    pieces = [
-        prism(head, -t - bolt.head_height, -t),
-        prism(washer, -t, 0.0),
-        prism(shank, 0.0, bolt.grip),
-        prism(washer, bolt.grip, nut),
-        prism(head, nut, nut + bolt.nut_height),
-    ]
-    tip = bolt.length - t
-    if tip > nut + bolt.nut_height:
-        pieces.append(prism(shank, nut + bolt.nut_height, tip))
-    return joined(pieces)
+    return joined(
+        [
+            prism(regular_polygon(6, p.size) if p.hexagonal else round_polygon(p.size), p.low, p.high)
+            for p in bolt_pieces(bolt)
+        ]
+    )
 
 
 def product_mesh(part: Part) -> Mesh:

@@ -36,7 +36,7 @@ def _feed(value: object) -> str:
     if hasattr(value, "__dataclass_fields__"):
         inner = (f.name for f in fields(value) if f.name not in _OWN_TO_THE_PIECE)  # type: ignore[arg-type]
         return type(value).__name__ + "".join(f";{name}={_feed(getattr(value, name))}" for name in inner)
-    return repr(value)
+    return f"{value:.6f}" if isinstance(value, float) else repr(value)
 
 
 def product_key(part: Part) -> str:

@@ -1,0 +1,106 @@
+"""Shapes of the products in IFC: triangulated bodies of timber, extruded bodies of steel, axes of planks, colours."""
+
+import numpy as np
+
+from aag_cad.export.ifc_base import Entity, IfcModel
+from aag_cad.export.ifc_kinds import colour, colour_name
+from aag_cad.parts.fasteners import bolt_pieces
+from aag_cad.parts.forming import plank_axes
+from aag_cad.parts.mesh import MESH_SPACING, product_mesh, regular_polygon
+from aag_cad.parts.model import Bolt, Part, Plank, Screw
+from aag_cad.units import Floats
+
+_DIGITS = 3
+
+
+def _coordinates(points: Floats) -> list[list[float]]:
+    """Return points as lists, rounded to 1e-3 mm and without negative zeros."""
+    rows: list[list[float]] = (np.round(points, _DIGITS) + 0.0).tolist()
+    return rows
+
+
+def face_set(model: IfcModel, part: Part) -> Entity:
+    """Return the closed triangulated face set of a part's product."""
+    mesh = product_mesh(part)
+    points = model.file.create_entity("IfcCartesianPointList3D", _coordinates(mesh.vertices))
+    return model.file.create_entity("IfcTriangulatedFaceSet", points, None, True, (mesh.faces + 1).tolist())
+
+
+def _hexagon(model: IfcModel, across_flats: float) -> Entity:
+    corners = _coordinates(regular_polygon(6, across_flats))
+    points = [model.file.create_entity("IfcCartesianPoint", corner) for corner in corners]
+    outline = model.file.create_entity("IfcPolyline", [*points, points[0]])
+    return model.file.create_entity("IfcArbitraryClosedProfileDef", "AREA", None, outline)
+
+
+def _circle(model: IfcModel, diameter: float) -> Entity:
+    return model.file.create_entity("IfcCircleProfileDef", "AREA", None, None, diameter / 2.0)
+
+
+def extrusion(model: IfcModel, profile: Entity, low: float, high: float) -> Entity:
+    """Return a profile extruded along z between two heights."""
+    origin = model.file.create_entity("IfcCartesianPoint", (0.0, 0.0, low))
+    up = model.file.create_entity("IfcDirection", (0.0, 0.0, 1.0))
+    at = model.file.create_entity("IfcAxis2Placement3D", origin)
+    return model.file.create_entity("IfcExtrudedAreaSolid", profile, at, up, high - low)
+
+
+def _bolt_solids(model: IfcModel, bolt: Bolt) -> list[Entity]:
+    """Return the pieces of a bolt, one upon the other, so that nothing overlaps."""
+    return [
+        extrusion(model, _hexagon(model, p.size) if p.hexagonal else _circle(model, p.size), p.low, p.high)
+        for p in bolt_pieces(bolt)
+    ]
+
+
+def _body(model: IfcModel, part: Part) -> tuple[str, list[Entity]]:
+    """Return the representation type and the items of a part's product."""
+    match part:
+        case Bolt():
+            return "SweptSolid", _bolt_solids(model, part)
+        case Screw():
+            return "SweptSolid", [extrusion(model, _circle(model, part.diameter), 0.0, part.length)]
+        case _:
+            return "Tessellation", [face_set(model, part)]
+
+
+def _axis(model: IfcModel, plank: Plank) -> Entity:
+    """Return the centre line of a formed plank through the centres of the rings of its body."""
+    count = max(2, int(np.ceil(plank.blank.length / MESH_SPACING)) + 1)
+    centres = plank_axes(plank, np.linspace(0.0, plank.blank.length, count))[0]
+    points = model.file.create_entity("IfcCartesianPointList3D", _coordinates(centres))
+    return model.file.create_entity("IfcIndexedPolyCurve", points)
+
+
+def surface_style(model: IfcModel, part: Part) -> Entity:
+    """Return the surface style of a part's family."""
+    rgb = model.file.create_entity("IfcColourRgb", None, *(round(value, 4) for value in colour(part)))
+    shading = model.file.create_entity("IfcSurfaceStyleShading", rgb, 0.0)
+    return model.file.create_entity("IfcSurfaceStyle", colour_name(part), "BOTH", [shading])
+
+
+def representation_maps(model: IfcModel, part: Part, style: Entity) -> list[Entity]:
+    """Return the maps of a product: its body, and for planks their axis; every item carries the style itself."""
+    kind, items = _body(model, part)
+    for item in items:
+        model.file.create_entity("IfcStyledItem", item, [style])
+    shapes = [model.file.create_entity("IfcShapeRepresentation", model.body, "Body", kind, items)]
+    if isinstance(part, Plank):
+        axis = _axis(model, part)
+        shapes.append(model.file.create_entity("IfcShapeRepresentation", model.axis, "Axis", "Curve3D", [axis]))
+    return [model.file.create_entity("IfcRepresentationMap", model.identity, shape) for shape in shapes]
+
+
+def mapped_shape(model: IfcModel, maps: tuple[Entity, ...], unmoved: Entity) -> Entity:
+    """Return the shape of one occurrence: the type's maps where they are; ``unmoved`` is the identity operator."""
+    shapes = []
+    for source in maps:
+        drawn = source.MappedRepresentation
+        item = model.file.create_entity("IfcMappedItem", source, unmoved)
+        shapes.append(
+            model.file.create_entity(
+                "IfcShapeRepresentation", drawn.ContextOfItems, drawn.RepresentationIdentifier,
+                "MappedRepresentation", [item],
+            )
+        )  # fmt: skip
+    return model.file.create_entity("IfcProductDefinitionShape", None, None, shapes)

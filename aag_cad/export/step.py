@@ -1,0 +1,261 @@
+"""STEP AP242: the vault as an assembly of shells, coupled beams and parts, with exact solids, marks and colours."""
+
+import io
+import os
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf
+from OCP.IFSelect import IFSelect_ReturnStatus
+from OCP.Interface import Interface_Static
+from OCP.Message import Message, Message_Gravity
+from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
+from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_StepModelType
+from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Solid
+from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+from aag_cad import __version__
+from aag_cad.errors import SolidError
+from aag_cad.export.files import write_bytes
+from aag_cad.export.ifc_kinds import colour
+from aag_cad.parts.model import Frame, Gridshell, Shell, shell_parts
+from aag_cad.parts.products import part_frame, product_key, product_name
+from aag_cad.solids.products import product_solids
+
+_TEXT_SETTINGS = {"write.step.schema": "AP242DIS", "write.step.unit": "MM"}
+_NUMBER_SETTINGS = {"write.step.assembly": 1, "write.surfacecurve.mode": 0, "write.step.nonmanifold": 0}
+_TEXT = r"('(?:[^']|'')*')"
+_OCCURRENCE = re.compile(
+    rf"NEXT_ASSEMBLY_USAGE_OCCURRENCE\(\s*'\d+'\s*,\s*{_TEXT}\s*,\s*{_TEXT}\s*,\s*(#\d+)\s*,\s*(#\d+)\s*,\s*\$\s*\)"
+)
+_FIRST_STYLE = re.compile(r"^#\d+ = MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION\(", re.MULTILINE)
+_RECORD = re.compile(r"#(\d+) = (.*?);\s*$", re.MULTILINE | re.DOTALL)
+_NOT_ASCII = re.compile(r"[^\x00-\x7f]+")
+_REFERENCE = re.compile(r"#(\d+)")
+
+
+@dataclass(frozen=True)
+class Header:
+    """What the header of the file says of its origin; ``time`` (ISO 8601) is given, never read from a clock."""
+
+    author: str = "AAG toolkit"
+    organisation: str = "AAG toolkit"
+    time: str = "2000-01-01T00:00:00"
+
+
+def write_step(
+    gridshell: Gridshell,
+    path: str | os.PathLike[str],
+    solids: Mapping[str, TopoDS_Solid] | None = None,
+    header: Header | None = None,
+) -> None:
+    """Write the gridshell as STEP AP242 in mm, vault > shell > coupled beam > part; the same model gives equal bytes.
+
+    Equal products are one product in the file, each placed under its mark. ``solids`` holds their shapes by product
+    key, as ``aag_cad.solids.products.product_solids`` gives them; they are built here if it is left out. SolidError
+    names the mark whose solid is invalid; FileError if the file cannot be written.
+    """
+    shapes = product_solids(gridshell) if solids is None else solids
+    text = _step_text(_document(gridshell, shapes), gridshell.name, header or Header())
+    write_bytes(path, _NOT_ASCII.sub(_directive, _neutral(text)).encode("ascii"))
+
+
+@dataclass(frozen=True, eq=False)
+class _Tools:
+    """The two hands that write to the kernel's document."""
+
+    shapes: XCAFDoc_ShapeTool
+    colours: XCAFDoc_ColorTool
+
+
+def _document(gridshell: Gridshell, solids: Mapping[str, TopoDS_Solid]) -> TDocStd_Document:
+    document = TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
+    main = document.Main()
+    tools = _Tools(XCAFDoc_DocumentTool.ShapeTool_s(main), XCAFDoc_DocumentTool.ColorTool_s(main))
+    tools.shapes.SetAutoNaming_s(False)
+    vault = _assembly(tools, gridshell.title)
+    products = _products(tools, gridshell, solids)
+    for shell in gridshell.shells:
+        _add(tools, vault, _shell(tools, shell, products), shell.placement, shell.mark)
+    for blade in gridshell.blades:
+        _add(tools, vault, products[product_key(blade)], part_frame(blade), blade.mark)
+    tools.shapes.UpdateAssemblies()
+    return document
+
+
+def _products(tools: _Tools, gridshell: Gridshell, solids: Mapping[str, TopoDS_Solid]) -> dict[str, TDF_Label]:
+    """Return the labels of all products by key; products of the same name but different make are numbered."""
+    labels: dict[str, TDF_Label] = {}
+    taken: Counter[str] = Counter()
+    parts = [part for shell in gridshell.shells for part in shell_parts(shell)]
+    for part in [*parts, *gridshell.blades]:
+        key = product_key(part)
+        if key in labels:
+            continue
+        name = product_name(part)
+        taken[name] += 1
+        labels[key] = tools.shapes.AddShape(solids[key], False, False)
+        _name(labels[key], name if taken[name] == 1 else f"{name} ({taken[name]})")
+        tint = Quantity_Color(*colour(part), Quantity_TypeOfColor.Quantity_TOC_sRGB)
+        tools.colours.SetColor(labels[key], tint, XCAFDoc_ColorType.XCAFDoc_ColorSurf)
+    return labels
+
+
+def _shell(tools: _Tools, shell: Shell, products: Mapping[str, TDF_Label]) -> TDF_Label:
+    whole = _assembly(tools, f"Shell {shell.mark}")
+    beams = {beam.mark: _assembly(tools, f"Coupled beam {beam.mark}") for beam in shell.beams}
+    home = parts_of_beams(shell)
+    for part in shell_parts(shell):
+        parent = beams[home[part.mark]] if part.mark in home else whole
+        _add(tools, parent, products[product_key(part)], part_frame(part), part.mark)
+    for mark, beam in beams.items():
+        _add(tools, whole, beam, None, mark)
+    return whole
+
+
+def parts_of_beams(shell: Shell) -> dict[str, str]:
+    """Return the mark of the coupled beam for each part that is put together with it: planks, blocks and their bolts.
+
+    What a joint of one single beam holds belongs to that beam; what ties two beams, and every screw, to the shell.
+    """
+    home = {plank.mark: plank.beam for plank in shell.planks if plank.beam}
+    with_beam = {block.mark for block in shell.blocks} | {bolt.mark for bolt in shell.bolts}
+    found = dict(home)
+    for joint in shell.joints:
+        beams = {home[mark] for mark in joint.members if mark in home}
+        if len(beams) == 1:
+            found.update({mark: next(iter(beams)) for mark in (*joint.members, *joint.fasteners) if mark in with_beam})
+    return found
+
+
+def _assembly(tools: _Tools, name: str) -> TDF_Label:
+    label = tools.shapes.NewShape()
+    _name(label, name)
+    return label
+
+
+def _add(tools: _Tools, parent: TDF_Label, child: TDF_Label, frame: Frame | None, mark: str) -> None:
+    _name(tools.shapes.AddComponent(parent, child, _location(frame)), mark)
+
+
+def _name(label: TDF_Label, name: str) -> None:
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))
+
+
+def _location(frame: Frame | None) -> TopLoc_Location:
+    """Return the place of a frame, a new one each time.
+
+    The kernel finds the name of an occurrence by product and place: the plain identity, which all share, would leave
+    one mark for the planks of three shells.
+    """
+    move = gp_Trsf()
+    if frame is not None:
+        move.SetTransformation(gp_Ax3(gp_Pnt(*frame.origin), gp_Dir(*frame.z), gp_Dir(*frame.x)), gp_Ax3())
+    return TopLoc_Location(move)
+
+
+@contextmanager
+def _settings() -> Iterator[None]:
+    """Set what the kernel keeps for the whole process, silence it, and put everything back afterwards."""
+    STEPCAFControl_Controller.Init_s()
+    texts = {name: Interface_Static.CVal_s(name) for name in _TEXT_SETTINGS}
+    numbers = {name: Interface_Static.IVal_s(name) for name in _NUMBER_SETTINGS}
+    printers = [(printer, printer.GetTraceLevel()) for printer in Message.DefaultMessenger_s().Printers()]
+    try:
+        for printer, _level in printers:
+            printer.SetTraceLevel(Message_Gravity.Message_Fail)
+        for name, text in _TEXT_SETTINGS.items():
+            Interface_Static.SetCVal_s(name, text)
+        for name, number in _NUMBER_SETTINGS.items():
+            Interface_Static.SetIVal_s(name, number)
+        yield
+    finally:
+        for name, text in texts.items():
+            Interface_Static.SetCVal_s(name, text)
+        for name, number in numbers.items():
+            Interface_Static.SetIVal_s(name, number)
+        for printer, level in printers:
+            printer.SetTraceLevel(level)
+
+
+def _step_text(document: TDocStd_Document, name: str, header: Header) -> str:
+    with _settings():
+        writer = STEPCAFControl_Writer()
+        writer.SetNameMode(True)
+        writer.SetColorMode(True)
+        writer.SetLayerMode(False)
+        writer.SetPropsMode(False)
+        if not writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
+            raise SolidError(f"{name}: the kernel cannot turn the solids into STEP; check each of them on its own")
+        _fill_header(writer, name, header)
+        stream = io.BytesIO()
+        if writer.WriteStream(stream) != IFSelect_ReturnStatus.IFSelect_RetDone:
+            raise SolidError(f"{name}: the kernel stopped while it wrote the STEP text")
+    return stream.getvalue().decode("utf-8")
+
+
+def _fill_header(writer: STEPCAFControl_Writer, name: str, header: Header) -> None:
+    made = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
+    made.SetName(TCollection_HAsciiString(f"{name}.step"))
+    made.SetTimeStamp(TCollection_HAsciiString(header.time))
+    made.SetAuthorValue(1, TCollection_HAsciiString(header.author))
+    made.SetOrganizationValue(1, TCollection_HAsciiString(header.organisation))
+    made.SetOriginatingSystem(TCollection_HAsciiString(f"AAG toolkit {__version__}"))
+    made.SetAuthorisation(TCollection_HAsciiString("none"))
+    made.SetDescriptionValue(1, TCollection_HAsciiString("Timber gridshell, formed planks"))
+
+
+def _neutral(text: str) -> str:
+    """Return the STEP text without what depends on the process, not on the model.
+
+    The kernel counts occurrences through the life of the process: the mark takes the place of that number. It lists the
+    styles, which end the file, in the order of memory addresses: they are sorted by what they colour.
+    """
+    text = _OCCURRENCE.sub(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE(\1,\1,\2,\3,\4,$)", text)
+    first = _FIRST_STYLE.search(text)
+    if first is None:
+        return text
+    end = text.index("ENDSEC;", first.start())
+    return text[: first.start()] + _sorted_styles(text[first.start() : end]) + text[end:]
+
+
+def _sorted_styles(block: str) -> str:
+    """Return the records of a block, renumbered in the order of the older records that their roots point at."""
+    records = {
+        int(number): "".join(line.strip() for line in body.splitlines()) for number, body in _RECORD.findall(block)
+    }
+    lowest = min(records)
+    links = {number: [int(link) for link in _REFERENCE.findall(body)] for number, body in records.items()}
+    roots = set(records).difference(*links.values())
+    order: dict[int, int] = {}
+
+    def visit(number: int) -> None:
+        if number >= lowest and number not in order:
+            order[number] = lowest + len(order)
+            for link in links[number]:
+                visit(link)
+
+    for root in sorted(roots, key=lambda number: min(links[number])):
+        visit(root)
+    return "".join(
+        f"#{new} = {_REFERENCE.sub(lambda link: f'#{order.get(int(link[1]), link[1])}', records[old])};\n"
+        for old, new in order.items()
+    )
+
+
+def _directive(found: re.Match[str]) -> str:
+    """Return characters beyond ASCII as ISO 10303-21 spells them; the kernel writes UTF-8, which many readers garble."""
+    codes = [ord(character) for character in found[0]]
+    if max(codes) > 0xFFFF:
+        return "\\X4\\" + "".join(f"{code:08X}" for code in codes) + "\\X0\\"
+    return "\\X2\\" + "".join(f"{code:04X}" for code in codes) + "\\X0\\"

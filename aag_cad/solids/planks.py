@@ -1,0 +1,108 @@
+"""Solids of a plank: formed in its place in the shell, and as the straight drilled blank."""
+
+import numpy as np
+from OCP.Geom import Geom_Line
+from OCP.TopoDS import TopoDS_Solid
+from scipy.interpolate import BSpline, make_interp_spline
+
+from aag_cad.errors import SolidError
+from aag_cad.parts.forming import formed_points, plank_axes
+from aag_cad.parts.model import CrossSection, Hole, Plank
+from aag_cad.solids import brep
+from aag_cad.solids.board import Bore, Skin, drilled_board
+from aag_cad.solids.bores import formed_bores, require_inside
+from aag_cad.units import Floats
+
+_DEGREE = 5
+
+
+def formed_plank(plank: Plank) -> TopoDS_Solid:
+    """Return the bent, twisted and drilled plank in the coordinates of its shell; SolidError if it comes out invalid.
+
+    Its long edges are quintic splines by the arc length of the centre line, its faces ruled between them; a hole is a
+    cylinder along the local thickness direction, with circular rims.
+    """
+    _require_square_ends(plank)
+    spline = _corner_splines(plank)
+    bores = formed_bores(plank, spline)
+    _point, tangents, widths, _thickness = plank_axes(plank, np.array([0.0, plank.blank.length]))
+    corners = np.asarray(spline(np.array([0.0, plank.blank.length])))
+    ends = (
+        brep.plane(corners[0].mean(axis=0), -tangents[0], widths[0]),
+        brep.plane(corners[1].mean(axis=0), tangents[1], widths[1]),
+    )
+    return brep.checked(drilled_board(_formed_skin(plank, spline, corners), ends, bores), plank.mark)
+
+
+def straight_blank(plank: Plank) -> TopoDS_Solid:
+    """Return the straight drilled blank in blank coordinates (x along it from its start); SolidError if invalid."""
+    _require_square_ends(plank)
+    blank = plank.blank
+    return brep.checked(drilled_box(0.0, blank.length, blank.section, blank.holes, plank.mark), plank.mark)
+
+
+def drilled_box(start: float, end: float, section: CrossSection, holes: tuple[Hole, ...], mark: str) -> TopoDS_Solid:
+    """Return the box along x, centred on it, with holes along z; SolidError names the mark if a hole breaks out."""
+    y, z = section.width / 2.0, section.thickness / 2.0
+    for hole in holes:
+        r = hole.diameter / 2.0
+        require_inside(mark, hole, hole.station - r > start and hole.station + r < end and abs(hole.offset) + r < y)
+    ring = _section_corners(section)
+    corners = np.array([np.column_stack([np.full(4, x), ring]) for x in (start, end)])
+    x_axis, y_axis, z_axis = np.eye(3)
+    outward = (-z_axis, y_axis, z_axis, -y_axis)
+    skin = Skin(
+        corners=corners,
+        curves=[Geom_Line(brep.point(corner), brep.direction(x_axis)) for corner in corners[0]],
+        surfaces=[brep.plane(corners[0, j], outward[j], x_axis) for j in range(4)],
+        length=end - start,
+        sides=_sides(section),
+        flat=True,
+    )
+    ends = brep.plane(start * x_axis, -x_axis, y_axis), brep.plane(end * x_axis, x_axis, y_axis)
+    bores = [
+        Bore(np.array([h.station, h.offset, 0.0]), x_axis, z_axis, h.diameter / 2.0, (-z, z), None, brep.TIGHT)
+        for h in holes
+    ]
+    return drilled_board(skin, ends, bores)
+
+
+def _require_square_ends(plank: Plank) -> None:
+    for cut in (plank.blank.start_cut, plank.blank.end_cut):
+        if cut.angle_deg != 90.0:
+            raise SolidError(
+                f"{plank.mark}: an end is cut at {cut.angle_deg:g} degrees; solids have square ends only (90)"
+            )
+
+
+def _section_corners(section: CrossSection) -> Floats:
+    y, z = section.width / 2.0, section.thickness / 2.0
+    return np.array([(-y, -z), (y, -z), (y, z), (-y, z)])
+
+
+def _sides(section: CrossSection) -> tuple[float, float, float, float]:
+    return section.width, section.thickness, section.width, section.thickness
+
+
+def _corner_splines(plank: Plank) -> BSpline:
+    """Return the four long edges as one spline into (4, 3) by the arc length of the centre line.
+
+    They are interpolated at the samples of the centre line, so that their mean is the centre line itself.
+    """
+    stations, ring = plank.curve.stations, _section_corners(plank.blank.section)
+    blank = np.column_stack([np.repeat(stations, 4), np.tile(ring, (len(stations), 1))])
+    return make_interp_spline(stations, formed_points(plank, blank).reshape(-1, 4, 3), k=_DEGREE)
+
+
+def _formed_skin(plank: Plank, spline: BSpline, corners: Floats) -> Skin:
+    sides, poles = _sides(plank.blank.section), spline.c
+    return Skin(
+        corners=corners,
+        curves=[brep.spline_curve(_DEGREE, spline.t, poles[:, j]) for j in range(4)],
+        surfaces=[
+            brep.ruled_surface(_DEGREE, spline.t, poles[:, (j + 1) % 4], poles[:, j], sides[j]) for j in range(4)
+        ],
+        length=plank.blank.length,
+        sides=sides,
+        flat=False,
+    )

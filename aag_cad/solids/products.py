@@ -1,0 +1,39 @@
+"""The solid of every product, each built once."""
+
+from OCP.TopoDS import TopoDS_Solid
+
+from aag_cad.errors import SolidError
+from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Part, Plank, Screw, Stud, all_parts
+from aag_cad.parts.products import product_key
+from aag_cad.solids.hardware import block_solid, bolt_solid, screw_solid, stud_solid
+from aag_cad.solids.planks import formed_plank
+
+
+def product_solid(part: Part) -> TopoDS_Solid:
+    """Return a part's solid in product coordinates: those of its frame, or of its shell where it has none.
+
+    SolidError names the mark if the solid comes out invalid, or if there is none for parts of this kind.
+    """
+    match part:
+        case Plank():
+            return formed_plank(part)
+        case Stud():
+            return stud_solid(part)
+        case CouplingBlock():
+            return block_solid(part)
+        case Bolt():
+            return bolt_solid(part)
+        case Screw():
+            return screw_solid(part)
+        case _:
+            raise SolidError(f"{part.mark}: there is no solid for parts of the kind {type(part).__name__}")
+
+
+def product_solids(gridshell: Gridshell) -> dict[str, TopoDS_Solid]:
+    """Return the solids of all products by their key, in the order in which the parts first need them."""
+    solids: dict[str, TopoDS_Solid] = {}
+    for part in all_parts(gridshell):
+        key = product_key(part)
+        if key not in solids:
+            solids[key] = product_solid(part)
+    return solids
