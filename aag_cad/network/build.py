@@ -159,8 +159,8 @@ def _check_spacing(design: Design, chart: AsymptoticChart) -> None:
     spacing = float(np.linalg.norm(chart.jet(np.zeros(1), np.zeros(1)).dv)) * design.step
     if spacing <= design.timber.width:
         raise NetworkError(
-            f"pattern.geodesics: {design.pattern.geodesics} planks of {design.timber.width:g} mm stand {spacing:.0f} mm "
-            "apart on the ground line and overlap; use fewer geodesics or a wider shells.sector_deg"
+            f"pattern.geodesics: {design.pattern.geodesics} planks of {design.timber.width:g} mm stand "
+            f"{spacing:.0f} mm apart on the ground line and overlap; use fewer geodesics or a wider shells.sector_deg"
         )
 
 

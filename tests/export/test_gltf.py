@@ -1,0 +1,109 @@
+"""The GLB file, read back with trimesh, against the model that it was written from."""
+
+import json
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+
+from aag_cad.design import Design
+from aag_cad.errors import FileError
+from aag_cad.export.gltf import write_glb
+from aag_cad.export.ifc_kinds import colour
+from aag_cad.parts.mesh import placed, product_mesh, shell_mesh
+from aag_cad.parts.model import Gridshell, Plank, all_parts, shell_parts
+from aag_cad.parts.products import product_key
+from aag_cad.pipeline import gridshell_of
+
+
+@pytest.fixture(scope="module")
+def vault(design: Design) -> Gridshell:
+    return gridshell_of(design)
+
+
+@pytest.fixture(scope="module")
+def path(vault: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("glb") / "vault.glb"
+    write_glb(vault, path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def scene(path: Path) -> trimesh.Scene:
+    return trimesh.load_scene(path)
+
+
+@pytest.fixture(scope="module")
+def tree(path: Path) -> dict[str, Any]:
+    """Give the JSON chunk of the file."""
+    data = path.read_bytes()
+    parsed: dict[str, Any] = json.loads(data[20 : 20 + struct.unpack("<I", data[12:16])[0]])
+    return parsed
+
+
+def test_every_part_is_a_node_under_its_mark(vault: Gridshell, scene: trimesh.Scene) -> None:
+    assert sorted(scene.graph.nodes_geometry) == sorted(part.mark for part in all_parts(vault))
+
+
+def test_equal_products_share_one_mesh(vault: Gridshell, scene: trimesh.Scene) -> None:
+    assert len(scene.geometry) == len({product_key(part) for part in all_parts(vault)})
+    assert len({scene.graph[f"S{shell}-G-07"][1] for shell in (1, 2, 3)}) == 1
+
+
+def test_shells_stand_under_the_vault_and_parts_under_their_shell(vault: Gridshell, tree: dict[str, Any]) -> None:
+    nodes = tree["nodes"]
+    below = {node["name"]: {nodes[i]["name"] for i in node.get("children", ())} for node in nodes}
+    assert below["vault"] == {"S1", "S2", "S3"}
+    for shell in vault.shells:
+        assert below[shell.mark] == {part.mark for part in shell_parts(shell)}
+
+
+def test_parts_stand_in_metres_with_y_up(vault: Gridshell, scene: trimesh.Scene) -> None:
+    """Coordinates are single precision: 1e-6 of 10 m, in mm 0.01."""
+    for shell in vault.shells:
+        for part in shell_parts(shell)[::5]:
+            matrix, name = scene.graph[part.mark]
+            found = trimesh.transform_points(scene.geometry[name].vertices, matrix) * 1000.0
+            x, y, z = placed(shell_mesh(part), shell.placement).vertices.T
+            np.testing.assert_allclose(found, np.column_stack([x, z, -y]), rtol=0, atol=0.01)
+
+
+def test_meshes_are_closed_and_keep_their_volume(vault: Gridshell, scene: trimesh.Scene) -> None:
+    """Single precision moves corners by some 1e-4 mm: 1e-4 of a plank 12 mm thick."""
+    for part in {product_key(part): part for part in all_parts(vault)}.values():
+        mesh = scene.geometry[scene.graph[part.mark][1]]
+        assert mesh.is_watertight
+        assert mesh.volume * 1e9 == pytest.approx(product_mesh(part).volume, rel=1e-4)
+
+
+def test_colours_are_those_of_the_families(vault: Gridshell, scene: trimesh.Scene) -> None:
+    for part in vault.shells[0].planks:
+        finish = scene.geometry[scene.graph[part.mark][1]].visual.material
+        assert finish.name == f"Plank {part.family}"
+        assert finish.baseColorFactor[:3] / 255.0 == pytest.approx(colour(part), abs=0.003)
+        assert finish.metallicFactor == 0.0
+    assert len({colour(part) for part in all_parts(vault) if isinstance(part, Plank)}) == 4
+    assert scene.geometry[scene.graph["S1-N-001-B1"][1]].visual.material.metallicFactor == 1.0
+
+
+def test_meshes_carry_no_normals_so_that_viewers_shade_them_flat(tree: dict[str, Any]) -> None:
+    attributes = {name for mesh in tree["meshes"] for each in mesh["primitives"] for name in each["attributes"]}
+    assert attributes == {"POSITION"}
+
+
+def test_the_vault_takes_less_than_2_mb(path: Path) -> None:
+    assert path.stat().st_size < 2e6
+
+
+def test_the_same_gridshell_gives_the_same_bytes(vault: Gridshell, path: Path, tmp_path: Path) -> None:
+    write_glb(vault, tmp_path / "other.glb")
+    assert (tmp_path / "other.glb").read_bytes() == path.read_bytes()
+
+
+def test_a_folder_that_cannot_be_written_is_named(vault: Gridshell, tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("")
+    with pytest.raises(FileError, match=r"vault\.glb"):
+        write_glb(vault, tmp_path / "out" / "vault.glb")
