@@ -214,9 +214,9 @@ def build(design: Design, folder: Path, only: Iterable[str] = (), report: Report
         begun.append((stage, time.perf_counter()))
         report(stage)
 
+    model = model_of(design, begin)
     with _staging(folder) as name:
         staging = Path(name)
-        model = model_of(design, begin)
         begin("audit")
         findings = tuple(audit(design, model.gridshell))
         begin("assembly")

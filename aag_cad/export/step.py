@@ -66,13 +66,14 @@ def write_step(
     names the mark whose solid is invalid; FileError if the file cannot be written.
     """
     shapes = product_solids(gridshell) if solids is None else solids
-    text = _step_text(_document(gridshell, shapes), gridshell.name, header or Header())
+    with _settings():
+        text = _step_text(_document(gridshell, shapes), gridshell.name, header or Header())
     write_bytes(path, _NOT_ASCII.sub(_directive, _neutral(text)).encode("ascii"))
 
 
 @dataclass(frozen=True, eq=False)
 class _Tools:
-    """The two hands that write to the kernel's document."""
+    """The tools of one document for its shapes and for their colours."""
 
     shapes: XCAFDoc_ShapeTool
     colours: XCAFDoc_ColorTool
@@ -82,7 +83,6 @@ def _document(gridshell: Gridshell, solids: Mapping[str, TopoDS_Solid]) -> TDocS
     document = TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
     main = document.Main()
     tools = _Tools(XCAFDoc_DocumentTool.ShapeTool_s(main), XCAFDoc_DocumentTool.ColorTool_s(main))
-    tools.shapes.SetAutoNaming_s(False)
     vault = _assembly(tools, gridshell.title)
     products = _products(tools, gridshell, solids)
     for shell in gridshell.shells:
@@ -170,6 +170,7 @@ def _settings() -> Iterator[None]:
     STEPCAFControl_Controller.Init_s()
     texts = {name: Interface_Static.CVal_s(name) for name in _TEXT_SETTINGS}
     numbers = {name: Interface_Static.IVal_s(name) for name in _NUMBER_SETTINGS}
+    naming = XCAFDoc_ShapeTool.AutoNaming_s()
     printers = [(printer, printer.GetTraceLevel()) for printer in Message.DefaultMessenger_s().Printers()]
     try:
         for printer, _level in printers:
@@ -178,29 +179,30 @@ def _settings() -> Iterator[None]:
             Interface_Static.SetCVal_s(name, text)
         for name, number in _NUMBER_SETTINGS.items():
             Interface_Static.SetIVal_s(name, number)
+        XCAFDoc_ShapeTool.SetAutoNaming_s(False)
         yield
     finally:
         for name, text in texts.items():
             Interface_Static.SetCVal_s(name, text)
         for name, number in numbers.items():
             Interface_Static.SetIVal_s(name, number)
+        XCAFDoc_ShapeTool.SetAutoNaming_s(naming)
         for printer, level in printers:
             printer.SetTraceLevel(level)
 
 
 def _step_text(document: TDocStd_Document, name: str, header: Header) -> str:
-    with _settings():
-        writer = STEPCAFControl_Writer()
-        writer.SetNameMode(True)
-        writer.SetColorMode(True)
-        writer.SetLayerMode(False)
-        writer.SetPropsMode(False)
-        if not writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
-            raise SolidError(f"{name}: the kernel cannot turn the solids into STEP; check each of them on its own")
-        _fill_header(writer, name, header)
-        stream = io.BytesIO()
-        if writer.WriteStream(stream) != IFSelect_ReturnStatus.IFSelect_RetDone:
-            raise SolidError(f"{name}: the kernel stopped while it wrote the STEP text")
+    writer = STEPCAFControl_Writer()
+    writer.SetNameMode(True)
+    writer.SetColorMode(True)
+    writer.SetLayerMode(False)
+    writer.SetPropsMode(False)
+    if not writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
+        raise SolidError(f"{name}: the kernel cannot turn the solids into STEP; check each of them on its own")
+    _fill_header(writer, name, header)
+    stream = io.BytesIO()
+    if writer.WriteStream(stream) != IFSelect_ReturnStatus.IFSelect_RetDone:
+        raise SolidError(f"{name}: the kernel stopped while it wrote the STEP text; free some memory and write again")
     return stream.getvalue().decode("utf-8")
 
 
@@ -254,7 +256,7 @@ def _sorted_styles(block: str) -> str:
 
 
 def _directive(found: re.Match[str]) -> str:
-    """Return characters beyond ASCII as ISO 10303-21 spells them; the kernel writes UTF-8, which many readers garble."""
+    """Return characters beyond ASCII as ISO 10303-21 spells them; the kernel writes them as UTF-8."""
     codes = [ord(character) for character in found[0]]
     if max(codes) > 0xFFFF:
         return "\\X4\\" + "".join(f"{code:08X}" for code in codes) + "\\X0\\"
