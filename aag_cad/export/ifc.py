@@ -11,7 +11,8 @@ from aag_cad.export.ifc_kinds import IFC_KINDS
 from aag_cad.export.ifc_properties import write_piece_sets, write_product_sets
 from aag_cad.export.ifc_schedule import write_schedule
 from aag_cad.export.ifc_types import Product, associate_materials, define_types, products
-from aag_cad.parts.model import CouplingBlock, Frame, Gridshell, Part, Plank, Shell, all_parts, shell_parts
+from aag_cad.parts.assemblies import beam_of_parts
+from aag_cad.parts.model import Frame, Gridshell, Part, Shell, all_parts, shell_parts
 from aag_cad.parts.products import part_frame
 from assembly.steps import Step
 
@@ -36,24 +37,6 @@ def _occurrence(model: IfcModel, part: Part, product: Product, parent: Entity, u
     )  # fmt: skip
 
 
-def owners(shell: Shell) -> dict[str, str]:
-    """Return the mark of the assembly that each part of a shell belongs to: its coupled beam, or the shell.
-
-    Planks and coupling blocks belong to their beam; a stud ties two beams and belongs to the shell, as do fasteners.
-    """
-    beam_of = {stop.joint: beam.mark for beam in shell.beams for stop in beam.joints}
-    found = {}
-    for part in shell_parts(shell):
-        match part:
-            case Plank():
-                found[part.mark] = part.beam or shell.mark
-            case CouplingBlock():
-                found[part.mark] = beam_of.get(part.mark, shell.mark)
-            case _:
-                found[part.mark] = shell.mark
-    return found
-
-
 def _write_shell(
     model: IfcModel, shell: Shell, vault: Entity, product_of: Mapping[str, Product], unmoved: Entity
 ) -> dict[str, Entity]:
@@ -66,9 +49,9 @@ def _write_shell(
         children[beam.mark] = []
         children[shell.mark].append(assemblies[beam.mark])
     placements = {mark: assembly.ObjectPlacement for mark, assembly in assemblies.items()}
-    owner, elements = owners(shell), {}
+    home, elements = beam_of_parts(shell), {}
     for part in shell_parts(shell):
-        mark = owner[part.mark]
+        mark = home.get(part.mark, shell.mark)
         elements[part.mark] = _occurrence(model, part, product_of[part.mark], placements[mark], unmoved)
         children[mark].append(elements[part.mark])
     for mark, parts in children.items():

@@ -28,6 +28,7 @@ from aag_cad import __version__
 from aag_cad.errors import SolidError
 from aag_cad.export.files import write_bytes
 from aag_cad.export.ifc_kinds import colour
+from aag_cad.parts.assemblies import beam_of_parts
 from aag_cad.parts.model import Frame, Gridshell, Shell, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
 from aag_cad.solids.products import product_solids
@@ -114,28 +115,13 @@ def _products(tools: _Tools, gridshell: Gridshell, solids: Mapping[str, TopoDS_S
 def _shell(tools: _Tools, shell: Shell, products: Mapping[str, TDF_Label]) -> TDF_Label:
     whole = _assembly(tools, f"Shell {shell.mark}")
     beams = {beam.mark: _assembly(tools, f"Coupled beam {beam.mark}") for beam in shell.beams}
-    home = parts_of_beams(shell)
+    home = beam_of_parts(shell)
     for part in shell_parts(shell):
         parent = beams[home[part.mark]] if part.mark in home else whole
         _add(tools, parent, products[product_key(part)], part_frame(part), part.mark)
     for mark, beam in beams.items():
         _add(tools, whole, beam, None, mark)
     return whole
-
-
-def parts_of_beams(shell: Shell) -> dict[str, str]:
-    """Return the mark of the coupled beam for each part that is put together with it: planks, blocks and their bolts.
-
-    What a joint of one single beam holds belongs to that beam; what ties two beams, and every screw, to the shell.
-    """
-    home = {plank.mark: plank.beam for plank in shell.planks if plank.beam}
-    with_beam = {block.mark for block in shell.blocks} | {bolt.mark for bolt in shell.bolts}
-    found = dict(home)
-    for joint in shell.joints:
-        beams = {home[mark] for mark in joint.members if mark in home}
-        if len(beams) == 1:
-            found.update({mark: next(iter(beams)) for mark in (*joint.members, *joint.fasteners) if mark in with_beam})
-    return found
 
 
 def _assembly(tools: _Tools, name: str) -> TDF_Label:

@@ -25,7 +25,8 @@ from OCP.XCAFDoc import XCAFDoc_ShapeTool
 from aag_cad.design import Design
 from aag_cad.errors import FileError, SolidError
 from aag_cad.export.ifc_kinds import colour
-from aag_cad.export.step import Header, parts_of_beams, write_step
+from aag_cad.export.step import Header, write_step
+from aag_cad.parts.assemblies import beam_of_parts
 from aag_cad.parts.mesh import Mesh, placed, shell_mesh
 from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, all_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
@@ -153,7 +154,7 @@ def parents_in_the_model(gridshell: Gridshell) -> dict[str, str]:
     """Return the mark of the assembly that each part and assembly sits in; "" is the vault."""
     parents = {shell.mark: "" for shell in gridshell.shells}
     for shell in gridshell.shells:
-        home = parts_of_beams(shell)
+        home = beam_of_parts(shell)
         parents |= {beam.mark: shell.mark for beam in shell.beams}
         parents |= {part.mark: home.get(part.mark, shell.mark) for part in shell_parts(shell)}
     return parents
@@ -196,7 +197,7 @@ def test_the_file_is_ap242_in_millimetres(text: Text) -> None:
 
 def test_beams_hold_their_planks_blocks_and_block_bolts_and_the_shell_the_rest(few: Gridshell) -> None:
     shell = few.shells[0]
-    home = parts_of_beams(shell)
+    home = beam_of_parts(shell)
     assert {mark for mark in home if home[mark] == shell.beams[0].mark} >= set(shell.beams[0].planks)
     for joint in shell.joints:
         beams = {plank.beam for plank in shell.planks if plank.mark in joint.members and plank.beam}
