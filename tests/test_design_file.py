@@ -304,9 +304,9 @@ def test_errors_of_a_design_are_also_the_builtins_that_they_stand_for() -> None:
 
 def test_a_design_never_changes(design: Design) -> None:
     with pytest.raises(ValidationError):
-        design.timber.width = 120.0  # type: ignore[misc]
+        design.timber.width = 120.0
     with pytest.raises(ValidationError):
-        design.timber = design.timber  # type: ignore[misc]
+        design.timber = design.timber
 
 
 @given(data=st.data(), key=st.sampled_from(FREE_KEYS))

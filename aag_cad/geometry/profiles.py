@@ -13,6 +13,9 @@ from aag_cad.errors import SurfaceError
 from aag_cad.units import Floats
 
 
+_GAUSS = np.polynomial.legendre.leggauss(60)
+
+
 class Profile(Protocol):
     """A meridian (r(u), z(u)) that rises with u; u = 0 is the ground line (z = 0)."""
 
@@ -52,7 +55,7 @@ class CrpcProfile:
     def height(self, u: Floats) -> Floats:
         """Return z and its first three derivatives by u as (4, n), mm; z by Gauss-Legendre quadrature."""
         a = 1.0 / self.ratio
-        nodes, weights = np.polynomial.legendre.leggauss(60)
+        nodes, weights = _GAUSS
         half = np.multiply.outer(u / 2.0, nodes + 1.0)
         z = a * self.neck_radius * (u / 2.0) * (np.cosh(half) ** (a - 1.0) @ weights)
         tanh, sech2 = np.tanh(u), 1.0 / np.cosh(u) ** 2

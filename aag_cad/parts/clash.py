@@ -39,9 +39,10 @@ class _Piece:
 
 @dataclass(frozen=True, eq=False)
 class _Body:
-    """A part, the shell it belongs to, and the matrix (4, 4) from product to vault coordinates."""
+    """A part with the key of its product, its shell, and the matrix (4, 4) from product to vault coordinates."""
 
     part: Part
+    key: str
     shell: int
     matrix: Floats
 
@@ -113,21 +114,24 @@ def _body(part: Part, shell: int, placement: Frame) -> _Body:
     matrix = frame_matrix(placement)
     if (frame := part_frame(part)) is not None:
         matrix = matrix @ frame_matrix(frame)
-    return _Body(part, shell, matrix)
+    return _Body(part, product_key(part), shell, matrix)
 
 
-def _pieces(index: int, body: _Body) -> Iterator[_Piece]:
-    """Yield a part's surface points, a plank in stretches of about 250 mm so that boxes stay tight."""
-    points = _surface_points(body.part)
-    groups = [points]
-    if isinstance(body.part, Plank):
-        curve = body.part.curve
-        ends = curve.points[[0, -1]]
-        order = np.argsort(points @ (ends[1] - ends[0]), kind="stable")
-        groups = np.array_split(points[order], max(1, round(curve.length / _STRETCH)))
+def _pieces(index: int, body: _Body, groups: list[Floats]) -> Iterator[_Piece]:
+    """Yield groups of a part's surface points, given in product coordinates, where the part is."""
     for group in groups:
         moved = group @ body.matrix[:3, :3].T + body.matrix[:3, 3]
         yield _Piece(index, moved, np.array([moved.min(axis=0), moved.max(axis=0)]))
+
+
+def _point_groups(part: Part) -> list[Floats]:
+    """Return a part's surface points, those of a plank in stretches of about 250 mm so that boxes stay tight."""
+    points = _surface_points(part)
+    if not isinstance(part, Plank):
+        return [points]
+    ends = part.curve.points[[0, -1]]
+    order = np.argsort(points @ (ends[1] - ends[0]), kind="stable")
+    return np.array_split(points[order], max(1, round(part.curve.length / _STRETCH)))
 
 
 def _near_pairs(boxes: Floats) -> Iterator[tuple[int, int]]:
@@ -152,10 +156,10 @@ def _own_pairs(shells: list[Shell]) -> set[tuple[str, str]]:
     }
 
 
-def _repeated(shells: list[Shell]) -> set[int]:
+def _repeated(bodies: list[_Body], count: int) -> set[int]:
     """Return the indices of shells that are equal to the first, so that their inside need not be looked at again."""
-    keys = [tuple((product_key(part), part_frame(part)) for part in shell_parts(shell)) for shell in shells]
-    return {i for i in range(1, len(shells)) if keys[i] == keys[0]}
+    keys = [[(body.key, part_frame(body.part)) for body in bodies if body.shell == i] for i in range(count)]
+    return {i for i in range(1, count) if keys[i] == keys[0]}
 
 
 def clashes(shells: Iterable[Shell], limit: float) -> list[Clash]:
@@ -166,9 +170,10 @@ def clashes(shells: Iterable[Shell], limit: float) -> list[Clash]:
     and is not held against them.
     """
     listed = list(shells)
-    own, repeated = _own_pairs(listed), _repeated(listed)
     bodies = [_body(part, i, shell.placement) for i, shell in enumerate(listed) for part in shell_parts(shell)]
-    pieces = [piece for index, body in enumerate(bodies) for piece in _pieces(index, body)]
+    own, repeated = _own_pairs(listed), _repeated(bodies, len(listed))
+    groups = {body.key: _point_groups(body.part) for body in {body.key: body for body in bodies}.values()}
+    pieces = [piece for index, body in enumerate(bodies) for piece in _pieces(index, body, groups[body.key])]
     inside: dict[int, list[tuple[int, Floats]]] = defaultdict(list)
     for i, j in _near_pairs(np.array([piece.box for piece in pieces])):
         a, b = bodies[pieces[i].body], bodies[pieces[j].body]

@@ -2,30 +2,22 @@
 
 from pathlib import Path
 
-import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from aag_cad.design import Design
 from aag_cad.export.gltf import write_glb
 from aag_cad.export.ifc import write_ifc
 from aag_cad.parts.model import Gridshell
-from aag_cad.pipeline import gridshell_of
-
-
-@pytest.fixture(scope="module")
-def vault(design: Design) -> Gridshell:
-    return gridshell_of(design)
 
 
 def test_write_three_shells_with_every_bolt_as_ifc(
-    benchmark: BenchmarkFixture, vault: Gridshell, tmp_path: Path
+    benchmark: BenchmarkFixture, gridshell: Gridshell, tmp_path: Path
 ) -> None:
-    benchmark(write_ifc, vault, tmp_path / "vault.ifc")
+    benchmark(write_ifc, gridshell, tmp_path / "vault.ifc")
     assert 1e6 < (tmp_path / "vault.ifc").stat().st_size < 8e6
 
 
 def test_write_three_shells_with_every_bolt_as_glb(
-    benchmark: BenchmarkFixture, vault: Gridshell, tmp_path: Path
+    benchmark: BenchmarkFixture, gridshell: Gridshell, tmp_path: Path
 ) -> None:
-    benchmark(write_glb, vault, tmp_path / "vault.glb")
+    benchmark(write_glb, gridshell, tmp_path / "vault.glb")
     assert 1e5 < (tmp_path / "vault.glb").stat().st_size < 2e6

@@ -95,7 +95,7 @@ def test_the_ratio_one_is_the_catenoid_a_minimal_surface() -> None:
 def test_derivatives_of_the_meridian_agree_with_finite_differences(n: float, y: float) -> None:
     """Sixth-order central differences of each derivative give the next one."""
     profile, step = CrpcProfile(R0, n), 5e-3
-    u = y + step * np.arange(-3, 4)
+    u: Floats = y + step * np.arange(-3.0, 4.0)
     weights = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / (60.0 * step)
     for values in (profile.radius(u), profile.height(u)):
         scale = float(np.abs(values[1:]).max())
@@ -156,7 +156,7 @@ def test_asymptotic_curves_meet_the_meridian_at_a_constant_angle(n: float) -> No
 
 @pytest.mark.parametrize(("n", "aa_deg", "ag_deg"), [(3.0, 120.0, 60.0), (1.0, 90.0, 45.0), (1.0 / 3.0, 60.0, 30.0)])
 def test_node_angles_of_the_named_surfaces(n: float, aa_deg: float, ag_deg: float) -> None:
-    """n = 3 is the equilateral tri-hex, n = 1 the catenoid's right angle, n = 1/3 bisects a sector of 60 degrees."""
+    """Equilateral tri-hex for n = 3, the catenoid's right angle for n = 1, a bisected sector of 60 degrees for 1/3."""
     one, other, meridian = directions_at(n, np.linspace(-0.8, 0.8, 9))
     np.testing.assert_allclose(np.degrees(np.arccos(np.einsum("ij,ij->i", one, other))), aa_deg, atol=1e-9)
     np.testing.assert_allclose(np.degrees(np.arccos(np.einsum("ij,ij->i", one, meridian))), ag_deg, atol=1e-9)

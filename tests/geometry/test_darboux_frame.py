@@ -37,7 +37,9 @@ def cylinder(u: Floats, v: Floats) -> Jet:
     zero, r = np.zeros_like(u), RADIUS
     out, around = np.column_stack([np.cos(u), np.sin(u), zero]), np.column_stack([-np.sin(u), np.cos(u), zero])
     flat = np.zeros((len(u), 3))
-    return Jet(r * out + np.column_stack([zero, zero, v]), r * around, flat + [0.0, 0.0, 1.0], -r * out, flat, flat)
+    return Jet(
+        r * out + np.column_stack([zero, zero, v]), r * around, flat + np.array([0.0, 0.0, 1.0]), -r * out, flat, flat
+    )
 
 
 def straight(u0: float, v0: float, du: float, dv: float, t: Floats) -> ParameterCurve:
@@ -89,9 +91,7 @@ def test_the_twist_of_a_helix_is_its_torsion_because_it_is_a_geodesic() -> None:
     climb = 0.6
     curve = straight(0.1, 0.0, math.cos(climb) / RADIUS, math.sin(climb), np.linspace(0.0, 5000.0, 20))
     found = darboux(cylinder(curve.u, curve.v), curve)
-    np.testing.assert_allclose(
-        found.geodesic_torsion, math.sin(climb) * math.cos(climb) / RADIUS, rtol=1e-12
-    )
+    np.testing.assert_allclose(found.geodesic_torsion, math.sin(climb) * math.cos(climb) / RADIUS, rtol=1e-12)
 
 
 def test_a_parallel_of_latitude_bends_with_the_tangent_of_the_latitude_and_does_not_twist() -> None:
@@ -127,7 +127,7 @@ def test_normal_and_geodesic_curvature_are_the_legs_of_the_curvature(turn: float
 
 
 def test_the_frame_turns_by_the_three_curvatures() -> None:
-    """t' = kappa_g b + kappa_n n and n' = -kappa_n t - tau_g b, by arc length: this fixes all three signs."""
+    """By arc length t' = kappa_g b + kappa_n n and n' = -kappa_n t - tau_g b: this fixes all three signs."""
     t = CHEBYSHEV_NODES
     found = on_vault(wave(0.8, 0.3, t))
     kn, kg, twist = (
@@ -185,9 +185,7 @@ def test_curvatures_of_crossing_curves_are_bound_to_gauss_and_mean(angle: float,
 def test_curvatures_do_not_depend_on_how_fast_the_curve_is_run_through(rate: float) -> None:
     t = np.linspace(-0.5, 0.5, 9)
     slow = wave(0.8, 0.3, t)
-    fast = ParameterCurve(
-        slow.u, slow.v, rate * slow.du, rate * slow.dv, rate**2 * slow.ddu, rate**2 * slow.ddv
-    )
+    fast = ParameterCurve(slow.u, slow.v, rate * slow.du, rate * slow.dv, rate**2 * slow.ddu, rate**2 * slow.ddv)
     one, other = on_vault(slow), on_vault(fast)
     np.testing.assert_allclose(other.speed, rate * one.speed, rtol=1e-12)
     for name in ("normal_curvature", "geodesic_curvature", "geodesic_torsion"):
@@ -195,7 +193,7 @@ def test_curvatures_do_not_depend_on_how_fast_the_curve_is_run_through(rate: flo
 
 
 def test_running_a_curve_backwards_flips_only_its_geodesic_curvature() -> None:
-    """b = n x t turns over with t, so the sideways bend changes its sign; kappa_n and tau_g are even in t."""
+    """The binormal n x t turns over with t, so the sideways bend changes sign; kappa_n and tau_g are even in t."""
     t = np.linspace(-0.5, 0.5, 9)
     ahead = wave(0.8, 0.3, t)
     back = ParameterCurve(ahead.u, ahead.v, -ahead.du, -ahead.dv, ahead.ddu, ahead.ddv)

@@ -121,7 +121,7 @@ def test_frames_are_orthonormal_and_right_handed(curve: FramedCurve) -> None:
 
 @given(offset=st.floats(-300.0, 300.0))
 def test_a_sideways_offset_of_a_circle_is_a_concentric_circle(offset: float) -> None:
-    """b = n x t points to the centre of a circle run counter-clockwise: the radius becomes r - e."""
+    """The binormal points to the centre of a circle run counter-clockwise: the radius becomes r - e."""
     curve = offset_curve(circle(), 0.0, offset, 0.0, circle().length)
     np.testing.assert_allclose(np.linalg.norm(curve.points, axis=1), RADIUS - offset, atol=MICRON)
     assert curve.length == pytest.approx(2.5 * (RADIUS - offset), abs=MICRON)
@@ -129,7 +129,7 @@ def test_a_sideways_offset_of_a_circle_is_a_concentric_circle(offset: float) -> 
 
 @given(height=st.floats(-300.0, 300.0))
 def test_a_lifted_helix_lies_on_the_parallel_cylinder_and_is_steeper_inside(height: float) -> None:
-    """c + h n is the helix of radius r + h with the same rise, so its length is that of the longer hypotenuse."""
+    """The curve c + h n is the helix of radius r + h with the same rise: its length is the longer hypotenuse."""
     base = helix()
     curve = offset_curve(base, height, 0.0, 0.0, base.length)
     np.testing.assert_allclose(np.hypot(curve.points[:, 0], curve.points[:, 1]), RADIUS + height, atol=MICRON)
@@ -157,9 +157,7 @@ def test_an_offset_over_part_of_a_curve_begins_and_ends_there(start: float, extr
     np.testing.assert_allclose(part.points[[0, -1]], ends, atol=1e-9)
 
 
-@given(
-    station=st.floats(100.0, 3000.0), across=st.floats(-200.0, 200.0), along_normal=st.floats(-200.0, 200.0)
-)
+@given(station=st.floats(100.0, 3000.0), across=st.floats(-200.0, 200.0), along_normal=st.floats(-200.0, 200.0))
 def test_the_nearest_station_sees_a_point_in_its_normal_plane(
     station: float, across: float, along_normal: float
 ) -> None:

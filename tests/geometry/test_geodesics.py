@@ -40,7 +40,7 @@ class Cylinder:
         zero, flat = np.zeros_like(u), np.zeros((len(u), 3))
         out = RADIUS * np.column_stack([np.cos(u), np.sin(u), zero])
         around = RADIUS * np.column_stack([-np.sin(u), np.cos(u), zero])
-        return Jet(out + np.column_stack([zero, zero, v]), around, flat + [0.0, 0.0, 1.0], -out, flat, flat)
+        return Jet(out + np.column_stack([zero, zero, v]), around, flat + np.array([0.0, 0.0, 1.0]), -out, flat, flat)
 
 
 def vault_chart() -> AsymptoticChart:

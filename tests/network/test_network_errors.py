@@ -58,7 +58,7 @@ def test_an_end_gap_longer_than_the_geodesics_is_named(design: Design) -> None:
 
 
 def test_coupling_blocks_longer_than_the_mesh_are_refused(design: Design) -> None:
-    """Between two studs of the vault, about 630 mm apart, there is no room for a block of 5 m: G would be unscrewed."""
+    """Between two studs of the vault, 476 to 727 mm apart, there is no room for a block of 5 m: G would lie loose."""
     assert "joints.block_length" in refusal(altered(design, joints={"block_length": 5000.0}))
 
 

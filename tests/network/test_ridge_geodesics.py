@@ -44,7 +44,7 @@ def test_ridge_planes_stand_through_the_centre_halfway_between_two_shells(
 
 @pytest.mark.parametrize("theta_deg", [0.0, 3.0, 11.0, 20.0, 30.0])
 def test_the_ridge_of_the_vault_in_plan(theta_deg: float) -> None:
-    """r = (sqrt(3)/2) D / sin(theta + 60 degrees) about the shell's own axis."""
+    """About the shell's own axis r = (sqrt(3)/2) D / sin(theta + 60 degrees)."""
     chart, theta = vault_chart(), math.radians(theta_deg)
     s = ridge_coordinate(chart, theta, 3, 0.0)
     radius = 5100.0 * math.cosh(math.sqrt(3.0) * s) ** (1.0 / 3.0)
@@ -94,9 +94,7 @@ def test_clairaut_holds_along_the_ridge_planks(design: Design, network: CurveNet
         assert np.ptp(constant) < 0.1
 
 
-def test_the_ridge_planks_end_at_the_crown_beside_the_plane_of_symmetry(
-    design: Design, network: CurveNetwork
-) -> None:
+def test_the_ridge_planks_end_at_the_crown_beside_the_plane_of_symmetry(design: Design, network: CurveNetwork) -> None:
     """Square ends: the nearer corner keeps half of the end gap to the plane y = 0, so both planks keep the gap."""
     for item, side in zip(ridge_planks(network), (-1.0, 1.0), strict=True):
         tip = item.curve.point_spline(np.array([item.end]))[0]

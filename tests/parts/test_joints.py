@@ -56,7 +56,7 @@ def block_joints(shell: Shell) -> list[tuple[Joint, CouplingBlock, Bolt, Screw, 
 def test_every_fastener_belongs_to_exactly_one_joint(gridshell: Gridshell) -> None:
     for shell in gridshell.shells:
         held = Counter(mark for joint in shell.joints for mark in joint.fasteners)
-        assert set(held) == {part.mark for part in (*shell.bolts, *shell.screws)}
+        assert set(held) == {bolt.mark for bolt in shell.bolts} | {screw.mark for screw in shell.screws}
         assert set(held.values()) == {1}
 
 

@@ -51,11 +51,12 @@ def test_every_printed_mark_is_read_back_as_itself(mark: Mark) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "", " ", "S", "S0", "S01", "S100", "s1", "S1-", "S1-A1", "S1-A1-", "S1-A1-7", "S1-A1-007", "S1-A3-07", "S1-A-07",
-        "S1-a1-07", "S1-A1-00", "S1-A1-07-", "S1-A1-07-l", "S1-A1-07-M", "S1-A1-07-LR", "S1-A1-07-L-B1", "S1-N-31",
-        "S1-N-0031", "S1-N-000", "S1-N-031-B0", "S1-N-031-B01", "S1-N-031-B", "S1-N-031-B100", "S1-N-031-X1",
+        "", " ", "S", "S0", "S01", "S100", "s1", "S1-", "S1-A1", "S1-A1-", "S1-A1-7", "S1-A1-007", "S1-A3-07",
+        "S1-A-07", "S1-a1-07", "S1-A1-00", "S1-A1-07-", "S1-A1-07-l", "S1-A1-07-M", "S1-A1-07-LR", "S1-A1-07-L-B1",
+        "S1-N-31", "S1-N-0031", "S1-N-000", "S1-N-031-B0", "S1-N-031-B01", "S1-N-031-B", "S1-N-031-B100", "S1-N-031-X1",
         "S1 A1 07", "S1_A1_07", "S1-A1-07 ", " S1-A1-07", "S1-A1-07\n", "S1--A1-07", "A1-07", "R12", "R12-3", "R12-00",
-        "R1-03", "R123-03", "R12-03-B1", "S1-R12-03", "S1-A1-٠٧", "S1-A1-0７", "S-1-A1-07", "S1-A1-+7", "S1-A1--7",
+        "R1-03", "R123-03", "R12-03-B1", "S1-R12-03", "S1-A1-\u0660\u0667", "S1-A1-0\uff17",
+        "S-1-A1-07", "S1-A1-+7", "S1-A1--7",
     ],
 )  # fmt: skip
 def test_what_only_looks_like_a_mark_is_none(text: str) -> None:
@@ -82,9 +83,10 @@ def test_a_mark_with_one_sign_changed_is_another_mark_or_none(mark: Mark, data: 
 @given(text=st.text(max_size=12))
 def test_no_text_is_read_as_a_mark_that_is_printed_otherwise(text: str) -> None:
     try:
-        assert str(parse_mark(text)) == text
-    except MarkError as error:
-        assert repr(text) in str(error) or text in str(error)
+        read = parse_mark(text)
+    except MarkError:
+        return
+    assert str(read) == text
 
 
 def test_the_refusal_shows_what_marks_look_like() -> None:

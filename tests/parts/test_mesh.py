@@ -53,7 +53,7 @@ def test_the_volume_agrees_with_an_independent_reader(shell: Shell) -> None:
 
 
 def test_a_formed_plank_keeps_the_volume_of_its_blank(shell: Shell) -> None:
-    """The centre line runs through the middle of the section, so section x length; chords of 120 mm miss 0.5 per mille."""
+    """The centre line runs through the middle of the section: section x length, less 0.5 per mille for the chords."""
     for plank in shell.planks:
         section = plank.blank.section
         expected = section.width * section.thickness * plank.blank.length
@@ -69,9 +69,7 @@ def test_the_volume_of_a_bent_plank_is_met_to_second_order_in_the_spacing(shell:
     assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.3)
 
 
-@given(
-    across=st.floats(1.0, 100.0), low=st.floats(-100.0, 0.0), height=st.floats(1.0, 300.0), sides=st.integers(3, 24)
-)
+@given(across=st.floats(1.0, 100.0), low=st.floats(-100.0, 0.0), height=st.floats(1.0, 300.0), sides=st.integers(3, 24))
 def test_a_prism_has_the_volume_of_its_section_times_its_height(
     across: float, low: float, height: float, sides: int
 ) -> None:
@@ -96,9 +94,7 @@ def test_round_sections_keep_the_area_of_their_circle(diameter: float) -> None:
     assert area == pytest.approx(math.pi * diameter**2 / 4.0, rel=1e-12)
 
 
-@given(
-    angle=st.floats(-3.0, 3.0), tilt=st.floats(-3.0, 3.0), origin=st.tuples(*[st.floats(-1e4, 1e4)] * 3)
-)
+@given(angle=st.floats(-3.0, 3.0), tilt=st.floats(-3.0, 3.0), origin=st.tuples(*[st.floats(-1e4, 1e4)] * 3))
 def test_placing_a_mesh_keeps_its_shape(angle: float, tilt: float, origin: tuple[float, float, float]) -> None:
     frame = rotated_frame(angle, tilt, origin)
     mesh = prism(regular_polygon(6, 24.0), -110.0, 110.0)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, shell_parts
+from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Hole, Plank, Screw, Shell, Stud, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
 
 
@@ -100,5 +100,10 @@ def test_names_of_products_name_the_thing_and_not_the_shell(gridshell: Gridshell
 
 def test_planks_are_drawn_in_their_shell_and_hardware_in_its_own_frame(shell: Shell) -> None:
     assert all(part_frame(plank) is None for plank in shell.planks)
-    for part in (*shell.studs, *shell.blocks, *shell.bolts, *shell.screws):
-        assert part_frame(part) == part.frame
+    hardware: tuple[Stud | CouplingBlock | Bolt | Screw, ...] = (
+        *shell.studs,
+        *shell.blocks,
+        *shell.bolts,
+        *shell.screws,
+    )
+    assert all(part_frame(part) == part.frame for part in hardware)

@@ -30,8 +30,8 @@ def exact_web(n: float = 3.0, count: int = 14, rows: int = 8) -> Web:
 def smooth_web(n: float, step: float) -> Web:
     """Return the web of the smooth surface over a fixed patch, sampled with a given step."""
     chart = AsymptoticChart(RevolutionSurface(CrpcProfile(R0, n), AXIS))
-    s = step * np.arange(-round(0.16 / step), round(0.64 / step) + 1)
-    theta = step * np.arange(-round(0.48 / step), round(0.48 / step) + 1)
+    s: Floats = step * np.arange(-round(0.16 / step), round(0.64 / step) + 1, dtype=np.float64)
+    theta: Floats = step * np.arange(-round(0.48 / step), round(0.48 / step) + 1, dtype=np.float64)
     return sampled_web(chart, s, theta)
 
 
