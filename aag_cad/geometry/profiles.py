@@ -12,7 +12,6 @@ from scipy.optimize import brentq
 from aag_cad.errors import SurfaceError
 from aag_cad.units import Floats
 
-
 _GAUSS = np.polynomial.legendre.leggauss(60)
 
 

@@ -172,8 +172,8 @@ def clashes(shells: Iterable[Shell], limit: float) -> list[Clash]:
     listed = list(shells)
     bodies = [_body(part, i, shell.placement) for i, shell in enumerate(listed) for part in shell_parts(shell)]
     own, repeated = _own_pairs(listed), _repeated(bodies, len(listed))
-    groups = {body.key: _point_groups(body.part) for body in {body.key: body for body in bodies}.values()}
-    pieces = [piece for index, body in enumerate(bodies) for piece in _pieces(index, body, groups[body.key])]
+    samples = {body.key: _point_groups(body.part) for body in {body.key: body for body in bodies}.values()}
+    pieces = [piece for index, body in enumerate(bodies) for piece in _pieces(index, body, samples[body.key])]
     inside: dict[int, list[tuple[int, Floats]]] = defaultdict(list)
     for i, j in _near_pairs(np.array([piece.box for piece in pieces])):
         a, b = bodies[pieces[i].body], bodies[pieces[j].body]

@@ -1,0 +1,147 @@
+"""An independent look at a plan: walks its steps over the data and lists what is wrong."""
+
+from collections import Counter
+from collections.abc import Iterator
+
+from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Plank, Screw, Shell, Stud, all_parts, shell_parts
+from assembly.steps import Plan, Step
+
+
+def _ancestors(plan: Plan) -> dict[str, set[str]]:
+    """Return for each step the ids of all steps that its predecessors force before it."""
+    found: dict[str, set[str]] = {}
+    for step in plan.steps:
+        found[step.id] = set(step.predecessors)
+        for before in step.predecessors:
+            found[step.id] |= found.get(before, set())
+    return found
+
+
+def _numbering(plan: Plan) -> Iterator[str]:
+    seen: set[str] = set()
+    for i, step in enumerate(plan.steps, start=1):
+        if step.number != i:
+            yield f"step {step.id}: number {step.number}, expected {i}"
+        if step.id in seen:
+            yield f"step {step.id}: the id stands twice"
+        for before in step.predecessors:
+            if before not in seen:
+                yield f"step {step.id}: predecessor {before} does not come before it"
+        seen.add(step.id)
+
+
+def _once(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
+    wanted = {part.mark for part in all_parts(gridshell)}
+    placed = Counter(mark for step in plan.steps for mark in step.marks)
+    for mark in sorted(wanted - set(placed)):
+        yield f"{mark}: no step adds it"
+    for mark in sorted(set(placed) - wanted):
+        yield f"{mark}: a step adds it, but the gridshell has no such part"
+    for mark, count in sorted(placed.items()):
+        if count > 1:
+            yield f"{mark}: {count} steps add it, allowed 1"
+    beams = {beam.mark for shell in gridshell.shells for beam in shell.beams}
+    moved = Counter(mark for step in plan.steps for mark in step.assemblies if mark in beams)
+    for mark in sorted(beams):
+        if moved[mark] != 1:
+            yield f"{mark}: laid {moved[mark]} times, expected once"
+
+
+def _places(plan: Plan, gridshell: Gridshell) -> dict[str, tuple[Step, int]]:
+    """Return where each part and beam comes into the structure: its step and its turn in it.
+
+    Planks and blocks of a beam come in when the beam is laid.
+    """
+    places = {mark: (step, i) for step in plan.steps for i, mark in enumerate(step.marks)}
+    for step in plan.steps:
+        places |= {mark: (step, i) for i, mark in enumerate(step.assemblies) if mark.count("-") == 2}
+    for shell in gridshell.shells:
+        for beam in shell.beams:
+            if beam.mark in places:
+                places |= {plank: places[beam.mark] for plank in beam.planks if plank in places}
+    return places
+
+
+def _layering(shell: Shell, places: dict[str, tuple[Step, int]]) -> Iterator[tuple[str, str, str]]:
+    """Yield (lower, upper, joint) for all planks that cross between different layers before the shell is shaped."""
+    planks = {plank.mark: plank for plank in shell.planks}
+    for joint in shell.joints:
+        members = [planks[mark] for mark in joint.members if mark in planks and planks[mark].family != "E"]
+        for lower in members:
+            for upper in members:
+                if lower.layer < upper.layer and lower.mark in places and upper.mark in places:
+                    yield lower.mark, upper.mark, joint.mark
+
+
+def _orders(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]]) -> Iterator[tuple[str, Step, Step]]:
+    """Yield (reason, earlier step, later step) for all that must follow something else in a shell."""
+    at = {mark: step for mark, (step, _) in places.items()}
+    made = {mark: step for step in plan.steps for mark in step.marks}
+    hoists = [step for step in plan.steps if step.phase == "hoist" and shell.mark in step.assemblies]
+    stands = [step for step in plan.steps if step.phase == "stand" and shell.mark in step.assemblies]
+    if len(hoists) != 1 or len(stands) != 1:
+        return
+    hoist, stand = hoists[0], stands[0]
+    screws, bolts = {screw.mark for screw in shell.screws}, {bolt.mark for bolt in shell.bolts}
+    blocks, studs = {block.mark for block in shell.blocks}, {stud.mark for stud in shell.studs}
+    for plank in shell.planks:
+        if plank.beam and plank.mark in made and plank.beam in at:
+            yield f"{plank.mark} is part of {plank.beam}", made[plank.mark], at[plank.beam]
+        if plank.family == "E" and plank.mark in at:
+            yield f"{plank.mark} is an edge plank", hoist, at[plank.mark]
+    for joint in shell.joints:
+        in_beam = any(mark in blocks for mark in joint.members)
+        for fastener in (mark for mark in joint.fasteners if mark in at):
+            needs = [mark for mark in joint.members if not (in_beam and fastener in bolts) or mark in blocks]
+            yield from ((f"{fastener} joins {mark}", at[mark], at[fastener]) for mark in needs if mark in at)
+            if fastener in screws:
+                yield f"{fastener} fixes the shape", hoist, at[fastener]
+        for mark in joint.members:
+            if mark in studs and mark in at:
+                yield f"{mark} is a stud", at[mark], hoist
+                yield from ((f"{mark} holds {plank}", at[plank], at[mark]) for plank in joint.members if plank in at)
+    foot = {mark for joint in shell.joints if joint.kind == "foot" for mark in joint.fasteners}
+    for part in shell_parts(shell):
+        stays = isinstance(part, Plank | Stud | CouplingBlock | Bolt | Screw) and part.mark not in foot
+        if part.mark in at and stays:
+            yield f"{part.mark} is part of the stiff shell", at[part.mark], stand
+
+
+def _shell_problems(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]]) -> Iterator[str]:
+    forced = _ancestors(plan)
+    for phase in ("hoist", "stand"):
+        steps = [step for step in plan.steps if step.phase == phase and shell.mark in step.assemblies]
+        if len(steps) != 1 or not steps[0].hold:
+            yield f"{shell.mark}: expected one {phase} step" + (" with a hold point" if steps else "")
+    for lower, upper, joint in _layering(shell, places):
+        (first, turn), (second, later_turn) = places[lower], places[upper]
+        if first.id == second.id and turn > later_turn:
+            yield f"{joint}: {upper} is laid before {lower} in step {first.id}, but lies on it"
+        elif first.id != second.id and first.id not in forced[second.id]:
+            yield f"{joint}: {upper} in step {second.id} lies on {lower}, but nothing forces step {first.id} before it"
+    for reason, first, second in _orders(plan, shell, places):
+        if first.id != second.id and first.id not in forced[second.id]:
+            yield f"{reason}, but nothing forces step {first.id} before step {second.id}"
+
+
+def _blades(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
+    forced, at = _ancestors(plan), {mark: step for step in plan.steps for mark in step.marks}
+    stands = {mark: step.id for step in plan.steps if step.phase == "stand" for mark in step.assemblies}
+    for blade in gridshell.blades:
+        for shell in (f"S{digit}" for digit in parse_mark(blade.mark).family[1:]):
+            if blade.mark in at and stands.get(shell) not in forced[at[blade.mark].id]:
+                yield f"{blade.mark}: nothing forces the standing of {shell} before step {at[blade.mark].id}"
+
+
+def check_plan(plan: Plan, gridshell: Gridshell) -> list[str]:
+    """Return what is wrong with a plan for a gridshell, one line each; an empty list if nothing is.
+
+    Every part in exactly one step, every beam laid once, numbers and predecessors in order, and everything that must
+    come first (what lies below, what a fastener joins, the shaping before the screws) forced by predecessors.
+    """
+    places = _places(plan, gridshell)
+    problems = [*_numbering(plan), *_once(plan, gridshell)]
+    for shell in gridshell.shells:
+        problems += list(_shell_problems(plan, shell, places))
+    return problems + list(_blades(plan, gridshell))

@@ -1,0 +1,28 @@
+"""How many people a piece takes, and when it takes lifting gear."""
+
+import math
+from dataclasses import dataclass
+
+LONG_PIECE = 3000.0
+
+
+@dataclass(frozen=True)
+class Crew:
+    """Who assembles: how many people at most, and what one of them may lift, kg."""
+
+    people: int
+    lift_limit: float
+
+
+@dataclass(frozen=True)
+class Hands:
+    """The people that a piece takes; ``gear`` if it is too heavy for all of them together."""
+
+    people: int
+    gear: bool
+
+
+def hands_for(crew: Crew, mass_kg: float, length_mm: float) -> Hands:
+    """Return the hands for the heaviest and the longest piece of a step; a piece over 3 m takes two people."""
+    needed = max(math.ceil(mass_kg / crew.lift_limit), 2 if length_mm > LONG_PIECE else 1)
+    return Hands(min(needed, crew.people), mass_kg > crew.people * crew.lift_limit)

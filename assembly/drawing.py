@@ -1,0 +1,155 @@
+"""Plain SVG: shapes as text, and labels that keep clear of each other. Sheet units, y down."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import TypeAlias
+
+import numpy as np
+
+from aag_cad.units import Floats
+
+FONT = "DejaVu Sans Mono"
+CHARACTER = 0.602
+_CAPITAL = 0.73
+
+Box: TypeAlias = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Style:
+    """How a shape is painted; widths in sheet units, ``dash`` as in SVG or ""."""
+
+    fill: str = "none"
+    stroke: str = "none"
+    width: float = 1.0
+    dash: str = ""
+
+
+@dataclass(frozen=True)
+class Label:
+    """A text in its box, centred at (x, y)."""
+
+    text: str
+    x: float
+    y: float
+    size: float
+
+
+def number(value: float) -> str:
+    """Return a coordinate with at most one decimal."""
+    return f"{value:.1f}".removesuffix(".0").replace("-0.0", "0") if abs(value) >= 0.05 else "0"
+
+
+def _paint(style: Style) -> str:
+    text = f' fill="{style.fill}"'
+    if style.stroke != "none":
+        text += f' stroke="{style.stroke}" stroke-width="{style.width:g}" stroke-linejoin="round"'
+        text += f' stroke-dasharray="{style.dash}"' if style.dash else ""
+    return text
+
+
+def group(items: Iterable[str], style: Style) -> str:
+    """Return items painted alike."""
+    body = "".join(items)
+    return f"<g{_paint(style)}>{body}</g>" if body else ""
+
+
+def path(points: Floats, closed: bool = True) -> str:
+    """Return a polygon or polyline through points (n, 2), to be painted by its group."""
+    steps = " ".join(f"{number(x)} {number(y)}" for x, y in points.tolist())
+    return f'<path d="M{steps}{"Z" if closed else ""}"/>'
+
+
+def polygon(points: Floats, style: Style) -> str:
+    """Return a closed polygon over points (n, 2)."""
+    return group([path(points)], style)
+
+
+def line(points: Floats, style: Style) -> str:
+    """Return an open line through points (n, 2)."""
+    return group([path(points, closed=False)], style)
+
+
+def circle(centre: Sequence[float] | Floats, radius: float) -> str:
+    """Return a circle, to be painted by its group."""
+    return f'<circle cx="{number(float(centre[0]))}" cy="{number(float(centre[1]))}" r="{number(radius)}"/>'
+
+
+def rectangle(x: float, y: float, width: float, height: float) -> str:
+    """Return a rectangle from its upper left corner, to be painted by its group."""
+    return f'<rect x="{number(x)}" y="{number(y)}" width="{number(width)}" height="{number(height)}"/>'
+
+
+def text(content: str, x: float, y: float, size: float, anchor: str = "middle", bold: bool = False) -> str:
+    """Return a text whose capitals are centred at height y; ``anchor`` is start, middle or end."""
+    weight = ' font-weight="bold"' if bold else ""
+    return (
+        f'<text x="{number(x)}" y="{number(y + _CAPITAL * size / 2.0)}" font-size="{number(size)}" '
+        f'text-anchor="{anchor}"{weight}>{escape(content)}</text>'
+    )
+
+
+def svg(width: float, height: float, items: Iterable[str]) -> str:
+    """Return an SVG file of the given size in sheet units (a tenth of a millimetre each)."""
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{width / 10:g}mm" height="{height / 10:g}mm" '
+    view = f'viewBox="0 0 {number(width)} {number(height)}" font-family="{FONT}">'
+    return head + view + "".join(items) + "</svg>\n"
+
+
+def label_box(label: Label) -> Box:
+    """Return the box (left, top, right, bottom) that a label covers."""
+    half = CHARACTER * label.size * len(label.text) / 2.0 + 0.25 * label.size
+    return label.x - half, label.y - 0.62 * label.size, label.x + half, label.y + 0.62 * label.size
+
+
+def _overlap(a: Box, b: Box) -> float:
+    wide = min(a[2], b[2]) - max(a[0], b[0])
+    high = min(a[3], b[3]) - max(a[1], b[1])
+    return wide * high if wide > 0.0 and high > 0.0 else 0.0
+
+
+def placed_labels(
+    wanted: Sequence[tuple[str, Floats]], size: float, sheet: Box, taken: Sequence[Box] = ()
+) -> tuple[Label, ...]:
+    """Return labels, each at that of its places (k, 2) where it covers least of earlier labels and ``taken`` boxes.
+
+    Earlier places are better where the cover is equal; what would stick out of the ``sheet`` counts as covered.
+    """
+    boxes, labels = list(taken), []
+    for content, places in wanted:
+        best, least = Label(content, float(places[0][0]), float(places[0][1]), size), np.inf
+        for x, y in places.tolist():
+            label = Label(content, x, y, size)
+            box = label_box(label)
+            inside = _overlap(box, sheet)
+            outside = (box[2] - box[0]) * (box[3] - box[1]) - inside
+            cover = sum(_overlap(box, other) for other in boxes) + 10.0 * outside
+            if cover < least - 1e-6:
+                best, least = label, cover
+        labels.append(best)
+        boxes.append(label_box(best))
+    return tuple(labels)
+
+
+def label_svg(labels: Iterable[Label], framed: bool = True) -> str:
+    """Return labels as black text, on white boxes with a thin frame or without."""
+    listed = tuple(labels)
+    boxes = (label_box(label) for label in listed)
+    plates = (rectangle(a, b, c - a, d - b) for a, b, c, d in boxes)
+    style = Style("#fff", "#000", 1.5) if framed else Style("#fff")
+    texts = (text(label.text, label.x, label.y, label.size, bold=framed) for label in listed)
+    return group(plates, style) + group(texts, Style("#000"))
+
+
+def places_along(points: Floats, shares: Sequence[float]) -> Floats:
+    """Return places (k, 2) at shares of the length of a polyline (n, 2)."""
+    lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    at = np.array(shares) * lengths[-1]
+    return np.column_stack([np.interp(at, lengths, points[:, 0]), np.interp(at, lengths, points[:, 1])])
+
+
+def places_round(centre: Floats, distance: float) -> Floats:
+    """Return places (16, 2) round a point (2,) for a label: close by in eight directions, then farther away."""
+    around = np.array([(0, -1), (0, 1), (1.4, 0), (-1.4, 0), (1.4, -0.8), (-1.4, -0.8), (1.4, 0.8), (-1.4, 0.8)])
+    return np.asarray(centre + distance * np.concatenate([around, 1.7 * around]))

@@ -1,0 +1,49 @@
+"""Lists of marks in short: neighbours become a range."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+
+from aag_cad.parts.marks import Mark, parse_mark
+
+
+def _runs(numbers: Iterable[int]) -> list[tuple[int, int]]:
+    runs: list[tuple[int, int]] = []
+    for number in sorted(numbers):
+        if runs and number == runs[-1][1] + 1:
+            runs[-1] = (runs[-1][0], number)
+        else:
+            runs.append((number, number))
+    return runs
+
+
+def short_mark(mark: str) -> str:
+    """Return a mark without its shell, as it stands on a drawing of that shell."""
+    parsed = parse_mark(mark)
+    return mark.removeprefix(f"S{parsed.shell}-") if parsed.shell and parsed.family else mark
+
+
+def mark_ranges(marks: Sequence[str]) -> tuple[str, ...]:
+    """Return marks without their shell, neighbours as ranges: ``A1-01 to A1-04 L+R``, ``K-012``; sorted by family.
+
+    Marks of several shells keep theirs.
+    """
+    parsed = [parse_mark(mark) for mark in marks]
+    alone = len({mark.shell for mark in parsed}) <= 1
+    sides: dict[tuple[int, str, int], list[str]] = defaultdict(list)
+    for mark in sorted(set(parsed)):
+        sides[mark.shell, mark.family, mark.index].append(mark.part)
+    groups: dict[tuple[int, str, str], list[int]] = defaultdict(list)
+    for (shell, family, index), parts in sides.items():
+        groups[shell, family, "+".join(part for part in parts if part)].append(index)
+    texts = []
+    for (shell, family, part), numbers in groups.items():
+        for first, last in _runs(numbers):
+            ends = [str(Mark(shell, family, number)) for number in ((first,) if first == last else (first, last))]
+            text = " to ".join(short_mark(end) if alone else end for end in ends)
+            texts.append(f"{text} {part}" if part else text)
+    return tuple(texts)
+
+
+def joined_ranges(marks: Sequence[str]) -> str:
+    """Return the ranges of marks as one text."""
+    return ", ".join(mark_ranges(marks))

@@ -1,0 +1,59 @@
+"""The view square on to a shell from outside: its axes on paper, and how far along the shell something lies."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from aag_cad.geometry.surface import unit
+from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.model import Shell
+from aag_cad.units import Floats
+
+_UPRIGHT = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """Directions of the paper in space: right, up and towards the viewer, (3, 3) float with one axis a row."""
+
+    axes: Floats
+
+    def __call__(self, points: Floats) -> Floats:
+        """Return points (n, 3) as (right, up, towards the viewer), (n, 3) mm."""
+        return np.asarray(points @ self.axes.T)
+
+
+def shell_view(shell: Shell) -> View:
+    """Return the view against the mean outward normal of a shell's joints, with the foot at the bottom."""
+    towards = unit(np.mean([joint.normal for joint in shell.joints], axis=0))
+    vertical = np.array([0.0, 0.0, 1.0])
+    up = vertical - (vertical @ towards) * towards
+    if float(np.linalg.norm(up)) < _UPRIGHT:
+        up = np.array([0.0, 1.0, 0.0]) - towards[1] * towards
+    up = unit(up)
+    return View(np.array([np.cross(up, towards), up, towards]))
+
+
+def sweep_direction(shell: Shell) -> Floats:
+    """Return the direction (3,) across a shell in which its flat planks are numbered."""
+    right: Floats = shell_view(shell).axes[0]
+    flat = [plank for plank in shell.planks if not plank.upright and plank.family != "E"]
+    if len(flat) < 2:
+        return right
+    across = np.array([plank.curve.point_spline(plank.curve.length / 2.0) @ right for plank in flat])
+    number = np.array([parse_mark(plank.mark).index for plank in flat])
+    falling = float((across - across.mean()) @ (number - number.mean())) < 0.0
+    return -right if falling else right
+
+
+def elevation_view(shell: Shell) -> View:
+    """Return the horizontal view along a shell, its foot to the left."""
+    across = shell_view(shell).axes[0]
+    vertical = np.array([0.0, 0.0, 1.0])
+    inwards = np.cross(vertical, across)
+    return View(np.array([inwards, vertical, np.cross(inwards, vertical)]))
+
+
+def vault_view() -> View:
+    """Return the plan: seen from above, x to the right and y up the sheet."""
+    return View(np.eye(3))
