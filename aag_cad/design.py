@@ -5,13 +5,18 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError, model_validator
 
 from aag_cad.errors import DesignError, FileError
 from aag_cad.resources import template
 
-Positive: TypeAlias = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NotNegative: TypeAlias = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+# Strict, because a key that reads "true" must not be built as one millimetre.
+Number: TypeAlias = Annotated[float, Field(allow_inf_nan=False, strict=True)]
+Positive: TypeAlias = Annotated[Number, Field(gt=0)]
+NotNegative: TypeAlias = Annotated[Number, Field(ge=0)]
+Count: TypeAlias = Annotated[int, Field(strict=True)]
+Text: TypeAlias = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=80)]
 Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]*$", max_length=40)]
 
 
@@ -25,7 +30,7 @@ class Project(Section):
     """What the files are called and who made them."""
 
     name: Name = Field(description="used in file names: lower-case letters, digits, - and _")
-    title: str = Field(min_length=1, max_length=80)
+    title: Text
     author: str = ""
     organisation: str = ""
 
@@ -35,7 +40,7 @@ class CrpcSurface(Section):
 
     profile: Literal["crpc"]
     neck_radius: Positive
-    ratio: Annotated[float, Field(gt=0.05, le=20)]
+    ratio: Annotated[Number, Field(gt=0.05, le=20)]
 
 
 class CatenoidSurface(Section):
@@ -57,7 +62,7 @@ class SplineSurface(Section):
     """Meridian through points (radius, height), lowest first, from below the ground line z = 0 to the top."""
 
     profile: Literal["spline"]
-    points: Annotated[tuple[tuple[Positive, float], ...], Field(min_length=6)]
+    points: Annotated[tuple[tuple[Positive, Number], ...], Field(min_length=6)]
 
 
 SurfaceSection: TypeAlias = Annotated[
@@ -68,17 +73,17 @@ SurfaceSection: TypeAlias = Annotated[
 class Shells(Section):
     """How many shells meet about the centre, and which part of the surface each takes."""
 
-    count: Annotated[int, Field(ge=3, le=12)]
+    count: Annotated[Count, Field(ge=3, le=12)]
     axis_distance: Positive = Field(description="mm from the centre to the vertical axis of each shell")
-    sector_deg: Annotated[float, Field(gt=0, lt=180)]
+    sector_deg: Annotated[Number, Field(gt=0, lt=180)]
 
 
 class Pattern(Section):
     """The tri-hex pattern."""
 
-    geodesics: Annotated[int, Field(ge=4, le=200, multiple_of=2)]
-    row_offset: Annotated[float, Field(ge=0, lt=1)] = 0.5
-    min_nodes: Annotated[int, Field(ge=1)] = 3
+    geodesics: Annotated[Count, Field(ge=4, le=200, multiple_of=2)]
+    row_offset: Annotated[Number, Field(ge=0, lt=1)] = 0.5
+    min_nodes: Annotated[Count, Field(ge=1)] = 3
     node_clearance_foot: NotNegative = 100.0
     node_clearance_ridge: NotNegative = 150.0
 
@@ -101,7 +106,7 @@ class Strength(Section):
 class Timber(Section):
     """Species, strength class and the one cross-section of all planks."""
 
-    species: str = Field(min_length=1)
+    species: Text
     strength_class: Literal["D30", "D35", "D40", "D50", "D60"]
     density: Positive = Field(description="kg/m3")
     width: Positive
@@ -167,7 +172,7 @@ class Transport(Section):
 class Crew(Section):
     """Who assembles it."""
 
-    people: Annotated[int, Field(ge=1, le=40)]
+    people: Annotated[Count, Field(ge=1, le=40)]
     lift_limit: Positive = Field(description="kg per person")
 
 
@@ -236,6 +241,22 @@ class Design(Section):
                 f"allowed {self.timber.thickness:g} to {self.timber.thickness + self.timber.width:g}",
             ),
             (
+                self.joints.stud_length >= 2.0 * (self.layer_offset + self.joints.bolt_offset + self.joints.bolt_hole),
+                f"joints.stud_length: {self.joints.stud_length:g} mm does not hold the bolts of both layers; at least "
+                f"{2.0 * (self.layer_offset + self.joints.bolt_offset + self.joints.bolt_hole):g}",
+            ),
+            (
+                self.joints.block_length >= 8.0 * self.joints.bolt_diameter,
+                f"joints.block_length: {self.joints.block_length:g} mm leaves the bolt less than 4 d to the block's "
+                f"ends (EN 1995-1-1, table 8.4); at least {8.0 * self.joints.bolt_diameter:g}",
+            ),
+            (
+                self.ground_spacing > self.timber.width,
+                f"pattern.geodesics: {self.pattern.geodesics} planks of {self.timber.width:g} mm stand "
+                f"{self.ground_spacing:.0f} mm apart on the ground line and overlap; use fewer geodesics or a wider "
+                "shells.sector_deg",
+            ),
+            (
                 self.boundary.end_overhang <= self.boundary.max_overhang,
                 f"boundary.end_overhang: {self.boundary.end_overhang:g} mm is more than boundary.max_overhang "
                 f"{self.boundary.max_overhang:g} mm",
@@ -257,6 +278,14 @@ class Design(Section):
         return math.radians(self.shells.sector_deg) / (self.pattern.geodesics - 1)
 
     @property
+    def ground_spacing(self) -> float:
+        """Distance between neighbouring geodesics on the ground line, mm."""
+        if isinstance(self.surface, SplineSurface):
+            radii, heights = zip(*self.surface.points, strict=True)
+            return self.step * float(np.interp(0.0, heights, radii))
+        return self.step * self.surface.neck_radius
+
+    @property
     def half_sector(self) -> float:
         """Half of the sector, radians."""
         return math.radians(self.shells.sector_deg) / 2.0
@@ -276,11 +305,18 @@ def _explain(error: ValidationError) -> str:
     """Return one line per fault: the key's path, what was found, what is allowed."""
     lines = []
     for fault in error.errors():
-        path = ".".join(str(part) for part in fault["loc"])
+        # Surfaces are told apart by their profile; its name is in the location of a fault but not in the file.
+        place = [str(part) for i, part in enumerate(fault["loc"]) if not (i == 1 and fault["loc"][0] == "surface")]
+        path = ".".join(place)
         if not path:
             lines.append(str(fault["msg"]).removeprefix("Value error, "))
         elif fault["type"] == "extra_forbidden":
             lines.append(f"{path}: unknown key; remove it or check its spelling (`aag schema` lists all keys)")
+        elif fault["type"] == "union_tag_not_found":
+            lines.append("surface.profile: missing; one of crpc, catenoid, hyperboloid, spline")
+        elif fault["type"] == "union_tag_invalid":
+            tag = fault["input"].get("profile")
+            lines.append(f"surface.profile: {tag!r} is none of crpc, catenoid, hyperboloid, spline")
         elif fault["type"] == "missing":
             lines.append(f"{path}: missing; `aag new` writes a commented file that has it")
         else:
@@ -316,7 +352,7 @@ def design_text(name_or_path: str) -> tuple[str, str]:
     except FileNotFoundError as error:
         names = ", ".join(shipped_designs())
         raise FileError(f"{name_or_path}: no such design file, and not a shipped design ({names})") from error
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         raise FileError(f"{name_or_path}: cannot be read as a text file: {error}") from error
 
 

@@ -79,8 +79,9 @@ def _meetings(design: Design, chart: AsymptoticChart, region: Region) -> tuple[l
     used = {curve for node in nodes for curve in node.curves}
     if not used:
         raise NetworkError(
-            f"pattern.min_nodes: no beam has {design.pattern.min_nodes} AA nodes; "
-            "use more geodesics, a larger shell or a smaller min_nodes"
+            f"pattern.min_nodes: no beam has {design.pattern.min_nodes} AA nodes; use more geodesics, a larger shell, "
+            f"a smaller min_nodes, pattern.node_clearance_foot ({design.pattern.node_clearance_foot:g} mm) or "
+            f"pattern.node_clearance_ridge ({design.pattern.node_clearance_ridge:g} mm)"
         )
     families: tuple[Family, ...] = ("A1", "A2")
     renamed = {
@@ -155,22 +156,12 @@ def _crossings(chart: AsymptoticChart, curves: dict[CurveId, FramedCurve], meeti
     ]
 
 
-def _check_spacing(design: Design, chart: AsymptoticChart) -> None:
-    spacing = float(np.linalg.norm(chart.jet(np.zeros(1), np.zeros(1)).dv)) * design.step
-    if spacing <= design.timber.width:
-        raise NetworkError(
-            f"pattern.geodesics: {design.pattern.geodesics} planks of {design.timber.width:g} mm stand "
-            f"{spacing:.0f} mm apart on the ground line and overlap; use fewer geodesics or a wider shells.sector_deg"
-        )
-
-
 def shell_network(design: Design, chart: AsymptoticChart) -> CurveNetwork:
     """Return the curve network of one shell of a design (paper section 2.2, Fig. 6b and c).
 
     Tri-hex selection of A and G lines, crop at the ground, the side meridians and the ridge geodesics, joints, ends.
     SurfaceError or NetworkError with the key to change where no buildable network comes out.
     """
-    _check_spacing(design, chart)
     half, shells, overhang = design.half_sector, design.shells.count, design.boundary.end_overhang
     neck, top = 0.0, ridge_coordinate(chart, half, shells, design.boundary.ridge_setback)
     radii = np.linalg.norm(chart.jet(np.array([neck, top]), np.array([half, half])).dv, axis=1)

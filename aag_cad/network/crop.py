@@ -49,8 +49,9 @@ def _geodesic_extents(
         extents[curve] = geodesic_extent(design, curves, stops)
         if extents[curve][1] - extents[curve][0] < 2 * design.timber.width:
             raise NetworkError(
-                f"geodesic G-{curve.number:02d}: no length is left between bottom and ridge plank; "
-                "enlarge shells.axis_distance or narrow shells.sector_deg"
+                f"geodesic G-{curve.number:02d}: no length is left between bottom and ridge plank; enlarge "
+                "shells.axis_distance, narrow shells.sector_deg or reduce boundary.end_gap "
+                f"({design.boundary.end_gap:g} mm)"
             )
     return extents
 
@@ -69,7 +70,8 @@ def kept_crossings(design: Design, curves: dict[CurveId, FramedCurve], crossings
     """Return the crossings that become joints, sorted by kind and place.
 
     An AG crossing goes where the G plank is cut off or its screw would sit within 7 d of the end (EN 1995-1-1, table
-    8.2, a3,c); of two joints on a beam whose blocks would overlap, the boundary wins over AA and AA over AG.
+    8.2, a3,c); of two joints on a beam whose blocks would overlap, the boundary wins over AA and AG. NetworkError if
+    the blocks are too long for the mesh.
     """
     extents = _geodesic_extents(design, curves, crossings)
     reach = _SCREW_END_DISTANCE * design.joints.screw_diameter
@@ -84,10 +86,16 @@ def kept_crossings(design: Design, curves: dict[CurveId, FramedCurve], crossings
         ranked = sorted(_crossings_on(kept, beam), key=lambda c: (_RANK[c.kind], _station_on(c, beam)))
         placed: list[Crossing] = []
         for c in ranked:
-            if all(abs(_station_on(c, beam) - _station_on(p, beam)) >= _spacing(design, c, p) for p in placed):
+            near = [p for p in placed if abs(_station_on(c, beam) - _station_on(p, beam)) < _spacing(design, c, p)]
+            if not near:
                 placed.append(c)
-            else:
-                kept.discard(c)
+                continue
+            if c.kind == "AG" and near[0].kind == "AA":
+                raise NetworkError(
+                    f"joints.block_length: a block of {design.joints.block_length:g} mm does not fit between the "
+                    f"studs of beam {beam.family}-{beam.number:02d}; shorten it or use fewer geodesics"
+                )
+            kept.discard(c)
     return sorted(kept, key=lambda c: (c.kind, c.curves, c.stations))
 
 

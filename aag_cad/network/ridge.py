@@ -40,6 +40,11 @@ def ridge_coordinate(chart: AsymptoticChart, theta: float, shells: int, distance
         point = surface_points(chart, np.array([s]), np.array([theta]))
         return float(ridge_distance(point, shells)[0]) - distance
 
+    if -distance < gap(low) <= 0.0:
+        raise NetworkError(
+            f"boundary.ridge_setback: {distance:.0f} mm from the ridge plane lie under the ground line at "
+            f"{math.degrees(theta):.1f} degrees; reduce it"
+        )
     if gap(low) <= 0.0:
         raise NetworkError(
             f"shells.axis_distance: the neck of the shell already crosses the ridge plane at {math.degrees(theta):.1f} "

@@ -30,13 +30,14 @@ def part_frame(part: Part) -> Frame | None:
 
 def _feed(value: object) -> str:
     if isinstance(value, FramedCurve):
-        return f"{value.stations.round(6).tolist()}{value.points.round(6).tolist()}{value.normals.round(9).tolist()}"
+        arrays = (value.stations.round(6), value.points.round(6), value.normals.round(9))
+        return "".join(str((array + 0.0).tolist()) for array in arrays)
     if isinstance(value, tuple):
         return "(" + ",".join(_feed(item) for item in value) + ")"
     if hasattr(value, "__dataclass_fields__"):
         inner = (f.name for f in fields(value) if f.name not in _OWN_TO_THE_PIECE)  # type: ignore[arg-type]
         return type(value).__name__ + "".join(f";{name}={_feed(getattr(value, name))}" for name in inner)
-    return f"{value:.6f}" if isinstance(value, float) else repr(value)
+    return f"{round(value, 6) + 0.0:.6f}" if isinstance(value, float) else repr(value)
 
 
 def product_key(part: Part) -> str:

@@ -1,6 +1,7 @@
 """gridshell.json: the gridshell written and read back to an equal object."""
 
 import json
+import math
 from dataclasses import MISSING, fields, is_dataclass
 from functools import cache
 from typing import Any, Literal, get_args, get_origin, get_type_hints
@@ -10,6 +11,7 @@ import numpy as np
 from aag_cad.errors import FileError
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.parts.model import SCHEMA_VERSION, Gridshell
+from aag_cad.units import Floats
 
 _hints = cache(get_type_hints)
 
@@ -25,11 +27,25 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _curve(data: Any, path: str) -> FramedCurve:
+def _numbers(data: Any, path: str) -> Floats:
+    flat = data
+    while isinstance(flat, list) and any(isinstance(item, list) for item in flat):
+        flat = [number for item in flat for number in (item if isinstance(item, list) else [item])]
+    if not isinstance(flat, list) or any(type(number) not in (int, float) for number in flat):
+        raise FileError(f"{path}: expected lists of numbers")
     try:
-        arrays = {name: np.array(data[name], dtype=float) for name in ("stations", "points", "normals")}
-    except (KeyError, TypeError, ValueError) as error:
-        raise FileError(f"{path}: not a curve of stations, points and normals: {error}") from error
+        array = np.array(data, dtype=np.float64)
+    except ValueError as error:
+        raise FileError(f"{path}: rows of different lengths") from error
+    if not np.all(np.isfinite(array)):
+        raise FileError(f"{path}: every number must be finite")
+    return array
+
+
+def _curve(data: Any, path: str) -> FramedCurve:
+    if not isinstance(data, dict) or set(data) != {"stations", "points", "normals"}:
+        raise FileError(f"{path}: not a curve of stations, points and normals")
+    arrays = {name: _numbers(data[name], f"{path}.{name}") for name in ("stations", "points", "normals")}
     count = arrays["stations"].size
     if arrays["stations"].shape != (count,) or any(arrays[k].shape != (count, 3) for k in ("points", "normals")):
         raise FileError(f"{path}: {count} stations need as many points and normals of three numbers each")
@@ -61,7 +77,9 @@ def _read(kind: Any, data: Any, path: str) -> Any:
         if data not in args:
             raise FileError(f"{path}: {data!r} is none of {', '.join(map(repr, args))}")
         return data
-    if kind is float and isinstance(data, int | float) and not isinstance(data, bool):
+    if kind is float and type(data) in (int, float):
+        if not math.isfinite(data):
+            raise FileError(f"{path}: {data!r} is not finite")
         return float(data)
     if type(data) is not kind:
         raise FileError(f"{path}: expected {kind.__name__}, found {data!r}")
@@ -77,7 +95,7 @@ def read_gridshell(text: str) -> Gridshell:
     """Return the gridshell in a JSON text; FileError with the path in the file where it does not fit."""
     try:
         data = json.loads(text)
-    except json.JSONDecodeError as error:
+    except (json.JSONDecodeError, RecursionError) as error:
         raise FileError(f"gridshell.json: not valid JSON: {error}") from error
     version = data.get("schema_version") if isinstance(data, dict) else None
     if version != SCHEMA_VERSION:

@@ -1,5 +1,7 @@
 """The flat layout: lower beams, geodesics, upper beams, studs, each across the shell in the order of the marks."""
 
+from itertools import pairwise
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -56,7 +58,7 @@ def test_rows_of_studs_rise_from_the_foot_and_each_row_is_level(shell: Shell) ->
     rows = flat_order(shell).rows
     height = {stud.mark: stud.frame.origin[2] for stud in shell.studs}
     assert sorted(mark for row in rows for mark in row) == sorted(height)
-    for row, above in zip(rows, rows[1:], strict=False):
+    for row, above in pairwise(rows):
         assert max(height[mark] for mark in row) < min(height[mark] for mark in above)
     for row in rows:
         # The rows of the vault are circles about a vertical axis.

@@ -74,7 +74,7 @@ def test_a_circle_is_refused_with_the_marks_that_lie_in_it(
         return
     graph = graph_of(count, [*edges, *zip(ring, [*ring[1:], ring[0]], strict=True)])
     with pytest.raises(PlanError) as caught:
-        laying_order(graph, {mark: (0.0,) for mark in marks})
+        laying_order(graph, dict.fromkeys(marks, (0.0,)))
     named = {mark for mark in marks if mark in str(caught.value)}
     on_circles = {mark for part in nx.strongly_connected_components(graph) if len(part) > 1 for mark in part}
     assert len(named) >= 2
@@ -101,7 +101,8 @@ def test_geodesics_lie_on_lower_beams_and_under_upper_beams(shell: Shell) -> Non
 
 
 def test_each_crossing_of_the_vault_gives_one_relation(shell: Shell) -> None:
-    joints = [mark for _, _, listed in layer_precedence(shell).edges(data="joints") for mark in listed]
+    precedence = layer_precedence(shell)
+    joints = [mark for edge in precedence.edges for mark in precedence.edges[edge]["joints"]]
     crossings = [joint.mark for joint in shell.joints if joint.kind in ("AA", "AG", "boundary")]
     assert sorted(joints) == sorted(crossings)
 

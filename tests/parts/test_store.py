@@ -139,12 +139,12 @@ def test_what_is_no_number_is_no_length(text: str, number: str) -> None:
         read_gridshell(json.dumps(data))
 
 
-def test_numbers_of_a_curve_written_as_text_are_refused(text: str) -> None:
-    data = json.loads(text)
-    curve = data["shells"][0]["planks"][0]["curve"]
-    curve["stations"] = [str(station) for station in curve["stations"]]
+@pytest.mark.parametrize("wrong", ["0.0", None, True])
+def test_a_curve_holds_numbers_and_nothing_like_them(text: str, wrong: object) -> None:
+    """Neither text nor null nor a truth value: they would come back as a station of 0, 1 or no number at all."""
+    curve = ("shells", 0, "planks", 0, "curve", "stations", 0)
     with pytest.raises(FileError, match=r"planks\[0\]\.curve"):
-        read_gridshell(json.dumps(data))
+        read_gridshell(exchanged(text, curve, wrong))
 
 
 def test_brackets_without_end_are_refused_like_other_broken_json() -> None:

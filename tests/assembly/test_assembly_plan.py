@@ -1,0 +1,197 @@
+"""The plan of the vault, walked step by step: each part once, nothing before what it rests on (paper section 3.2)."""
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.model import Blade, Bolt, Frame, Gridshell, all_parts
+from assembly.check import check_plan
+from assembly.errors import PlanError
+from assembly.plan import piece_weights, plan_of
+from assembly.site import site_works
+from assembly.steps import Plan, Step
+
+PEOPLE, LIFT = 4, 25.0
+
+
+@pytest.fixture(scope="module")
+def plan(gridshell: Gridshell) -> Plan:
+    return plan_of(gridshell, PEOPLE, LIFT)
+
+
+def steps_of(plan: Plan, shell: str, *phases: str) -> list[Step]:
+    return [step for step in plan.steps if step.shell == shell and (not phases or step.phase in phases)]
+
+
+def test_every_part_of_the_vault_comes_in_exactly_one_step(plan: Plan, gridshell: Gridshell) -> None:
+    placed = Counter(mark for step in plan.steps for mark in step.marks)
+    assert placed == Counter(part.mark for part in all_parts(gridshell))
+
+
+def test_the_plan_has_no_fault(plan: Plan, gridshell: Gridshell) -> None:
+    assert check_plan(plan, gridshell) == []
+
+
+def test_a_crew_walking_the_steps_never_misses_a_part(plan: Plan, gridshell: Gridshell) -> None:
+    """Do the steps one by one on the bare data: what a step needs must lie there already."""
+    joints = {joint.mark: joint for shell in gridshell.shells for joint in shell.joints}
+    blocks = {block.mark for shell in gridshell.shells for block in shell.blocks}
+    beam_of = {plank.mark: plank.beam for shell in gridshell.shells for plank in shell.planks if plank.beam}
+    made: set[str] = set()
+    laid: set[str] = set()
+    for step in plan.steps:
+        made.update(step.marks)
+        for unit in step.assemblies:
+            if unit in beam_of.values():
+                assert all(plank in made for plank, beam in beam_of.items() if beam == unit)
+                laid.add(unit)
+        for mark in step.marks:
+            part = parse_mark(mark)
+            if part.part[:1] not in ("B", "W"):
+                continue
+            joint = joints[mark.rpartition("-")[0]]
+            block_bolt = part.part[0] == "B" and any(member in blocks for member in joint.members)
+            for member in joint.members:
+                if block_bolt and member not in blocks and member not in beam_of:
+                    continue
+                assert member in made
+                assert block_bolt or member not in beam_of or beam_of[member] in laid
+
+
+def test_the_phases_of_a_shell_follow_the_paper(plan: Plan) -> None:
+    for shell in ("S1", "S2", "S3"):
+        phases = list(dict.fromkeys(step.phase for step in steps_of(plan, shell)))
+        assert phases == [
+            "prefabricate", "lay A1", "lay G", "lay A2", "studs", "hoist", "edge planks", "fix geodesics", "tighten",
+        ]  # fmt: skip
+    assert list(dict.fromkeys(step.phase for step in steps_of(plan, ""))) == ["feet", "stand", "ridges"]
+
+
+def test_a_shell_makes_a_readable_booklet(plan: Plan) -> None:
+    for shell in ("S1", "S2", "S3"):
+        assert 20 <= len(steps_of(plan, shell)) <= 25
+        for step in steps_of(plan, shell, "prefabricate"):
+            assert len({mark[:8] for mark in step.marks if "-A" in mark}) <= 4
+
+
+def test_no_screw_is_driven_and_no_edge_goes_in_before_the_shell_has_its_shape(plan: Plan) -> None:
+    for shell in ("S1", "S2", "S3"):
+        (hoist,) = steps_of(plan, shell, "hoist")
+        early = [mark for step in steps_of(plan, shell) if step.number < hoist.number for mark in step.marks]
+        assert not [mark for mark in early if parse_mark(mark).part[:1] == "W" or parse_mark(mark).family == "E"]
+        assert hoist.marks == ()
+        assert hoist.hold
+
+
+def test_screws_of_lower_beams_are_driven_from_outside_and_of_upper_beams_from_inside(
+    plan: Plan, gridshell: Gridshell
+) -> None:
+    upper = {beam.mark for beam in gridshell.shells[0].beams if beam.layer > 0}
+    joints = {joint.mark: joint for joint in gridshell.shells[0].joints}
+    beam_of = {plank.mark: plank.beam for plank in gridshell.shells[0].planks}
+    for step in steps_of(plan, "S1", "fix geodesics"):
+        for screw in step.marks:
+            members = joints[screw.rpartition("-")[0]].members
+            inside = any(beam_of.get(member, "") in upper for member in members)
+            assert step.title.endswith("from inside" if inside else "from outside")
+
+
+def test_identical_shells_are_put_together_alike(plan: Plan) -> None:
+    def told(shell: str) -> list[tuple[object, ...]]:
+        return [
+            (step.id[3:], step.phase, step.title.replace(shell, ""), step.crew, [mark[3:] for mark in step.marks])
+            for step in steps_of(plan, shell)
+        ]
+
+    assert told("S1") == told("S2") == told("S3")
+
+
+def test_the_same_gridshell_gives_the_same_plan(plan: Plan, gridshell: Gridshell) -> None:
+    assert plan_of(gridshell, PEOPLE, LIFT) == plan
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_fewer_shells_have_a_sound_plan(gridshell: Gridshell, count: int) -> None:
+    fewer = replace(gridshell, shells=gridshell.shells[:count])
+    found = plan_of(fewer, PEOPLE, LIFT)
+    assert check_plan(found, fewer) == []
+    assert len(steps_of(found, "", "ridges")) == count - 1
+
+
+def test_nobody_lifts_more_than_allowed(gridshell: Gridshell) -> None:
+    weights = piece_weights(gridshell)
+    for step in plan_of(gridshell, 2, 5.0).steps:
+        lifted = step.assemblies or step.marks
+        heavy = max((weights[mark][0] for mark in lifted), default=0.0)
+        assert 1 <= step.crew <= 2
+        if step.phase not in ("hoist", "stand", "ridges"):
+            assert heavy <= step.crew * 5.0 or "lifting gear" in step.tools
+
+
+def test_a_lone_carpenter_gets_a_plan_too(gridshell: Gridshell) -> None:
+    assert {step.crew for step in plan_of(gridshell, 1, 25.0).steps} == {1}
+
+
+@pytest.mark.parametrize(("people", "lift"), [(0, 25.0), (4, 0.0), (4, float("nan"))])
+def test_a_crew_that_cannot_lift_is_refused(gridshell: Gridshell, people: int, lift: float) -> None:
+    with pytest.raises(PlanError, match=r"crew\.people"):
+        plan_of(gridshell, people, lift)
+
+
+def test_a_part_that_no_joint_names_is_refused_by_its_mark(gridshell: Gridshell) -> None:
+    shell = gridshell.shells[0]
+    stray = replace(shell.bolts[0], mark="S1-N-999-B1")
+    assert isinstance(stray, Bolt)
+    damaged = replace(gridshell, shells=(replace(shell, bolts=(*shell.bolts, stray)), *gridshell.shells[1:]))
+    with pytest.raises(PlanError, match="S1-N-999-B1"):
+        plan_of(damaged, PEOPLE, LIFT)
+
+
+def _without(plan: Plan, step_id: str) -> Plan:
+    return replace(plan, steps=tuple(step for step in plan.steps if step.id != step_id))
+
+
+def _changed(plan: Plan, step_id: str, **changes: object) -> Plan:
+    steps = (replace(step, **changes) if step.id == step_id else step for step in plan.steps)  # type: ignore[arg-type]
+    return replace(plan, steps=tuple(steps))
+
+
+def _swapped(plan: Plan, a: str, b: str) -> Plan:
+    at = {step.id: i for i, step in enumerate(plan.steps)}
+    steps = list(plan.steps)
+    steps[at[a]], steps[at[b]] = steps[at[b]], steps[at[a]]
+    return replace(plan, steps=tuple(replace(step, number=i) for i, step in enumerate(steps, start=1)))
+
+
+FAULTS: list[tuple[Callable[[Plan], Plan], str]] = [
+    (lambda plan: _without(plan, "S1.lay.4"), "S1-G-14: no step adds it"),
+    (lambda plan: _changed(plan, "S1.lay.3", marks=("S1-G-01", "S1-G-01")), "S1-G-01: 2 steps add it"),
+    (lambda plan: _changed(plan, "S1.lay.3", marks=("S1-G-99",)), "S1-G-99: a step adds it, but"),
+    (lambda plan: _changed(plan, "S1.lay.3", predecessors=()), "nothing forces step S1.lay.1 before"),
+    (lambda plan: _changed(plan, "S1.hoist", predecessors=()), "is a stud, but nothing forces"),
+    (lambda plan: _changed(plan, "S1.hoist", hold=""), "S1: expected one hoist step with a hold point"),
+    (lambda plan: _changed(plan, "S1.edge.lower", predecessors=()), "S1-E-01 is an edge plank, but nothing forces"),
+    (lambda plan: _changed(plan, "S2.tighten", predecessors=()), "S2-G-01 is part of the stiff shell"),
+    (lambda plan: _swapped(plan, "S1.lay.3", "S1.lay.5"), "does not come before it"),
+    (lambda plan: _changed(plan, "S1.lay.1", assemblies=("S1-A1-01",)), "S1-A1-02: laid 0 times"),
+    (lambda plan: _changed(plan, "S1.lay.2", number=3), "step S1.lay.2: number 3, expected 8"),
+]
+
+
+@pytest.mark.parametrize(("damage", "complaint"), FAULTS)
+def test_the_check_finds_a_damaged_plan(
+    plan: Plan, gridshell: Gridshell, damage: Callable[[Plan], Plan], complaint: str
+) -> None:
+    assert any(complaint in problem for problem in check_plan(damage(plan), gridshell))
+
+
+def test_blades_join_the_shells_that_they_name_once_both_stand(gridshell: Gridshell) -> None:
+    frame = Frame((0.0, 0.0, 2600.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    blades = tuple(Blade(f"R23-{i:02d}", frame, 300.0, 80.0, 6.0, ()) for i in (1, 2))
+    works = {work.id: work for work in site_works(replace(gridshell, blades=blades))}
+    assert works["site.ridge.S2.S3"].marks == ("R23-01", "R23-02")
+    assert {"site.stand.S2", "site.stand.S3"} <= set(works["site.ridge.S2.S3"].after)
+    assert "site.ridge.S1.S2" not in works

@@ -1,0 +1,75 @@
+"""A plan written as JSON comes back equal; a damaged file is refused with the place of the fault."""
+
+import json
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aag_cad.errors import AagError
+from aag_cad.parts.model import Gridshell
+from assembly.errors import PlanError
+from assembly.plan import plan_json, plan_of, read_plan
+from assembly.steps import PHASES, Plan, Step
+
+texts = st.text(max_size=12)
+listed = st.lists(texts, max_size=4).map(tuple)
+steps = st.builds(
+    Step,
+    number=st.integers(1, 999),
+    id=texts,
+    phase=st.sampled_from(PHASES),
+    title=texts,
+    shell=texts,
+    marks=listed,
+    assemblies=listed,
+    tools=listed,
+    crew=st.integers(0, 40),
+    predecessors=listed,
+    instructions=listed,
+    hold=texts,
+)
+plans = st.builds(Plan, name=texts, steps=st.lists(steps, max_size=4).map(tuple))
+
+
+@given(plans)
+def test_any_plan_comes_back_equal(plan: Plan) -> None:
+    assert read_plan(plan_json(plan)) == plan
+
+
+def test_the_plan_of_the_vault_comes_back_equal(gridshell: Gridshell) -> None:
+    plan = plan_of(gridshell, 4, 25.0)
+    assert read_plan(plan_json(plan)) == plan
+
+
+def _file(**changes: Any) -> str:
+    step = Step(1, "S1.hoist", "hoist", "Hoist", "S1", (), ("S1",), (), 4, (), ("Up.",), "Stop.")
+    data = json.loads(plan_json(Plan("vault", (step,))))
+    data["steps"][0] |= changes
+    return json.dumps(data)
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("{", "not valid JSON"),
+        ("[]", "schema_version"),
+        ('{"schema_version": 99}', "schema_version must be 1"),
+        ('{"schema_version": 1, "name": "vault"}', "list of steps"),
+        ('{"schema_version": 1, "name": "vault", "steps": [{}]}', r"steps\[0\]: keys"),
+        (_file(phase="lunch"), r"steps\[0\]\.phase: 'lunch'"),
+        (_file(crew="4"), r"steps\[0\]\.crew: '4'"),
+        (_file(crew=True), r"steps\[0\]\.crew: True"),
+        (_file(marks=[1]), r"steps\[0\]\.marks"),
+        (_file(hold=None), r"steps\[0\]\.hold"),
+    ],
+)
+def test_a_damaged_file_is_refused_with_the_place(text: str, place: str) -> None:
+    with pytest.raises(PlanError, match=place):
+        read_plan(text)
+
+
+def test_a_plan_error_is_an_error_of_the_toolkit_and_a_wrong_value() -> None:
+    assert issubclass(PlanError, AagError)
+    assert issubclass(PlanError, ValueError)

@@ -1,0 +1,122 @@
+"""The booklet: one card a step, read back with pypdf."""
+
+import re
+from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
+
+import pytest
+from pypdf import PdfReader
+
+from aag_cad.errors import FileError
+from aag_cad.parts.model import Gridshell
+from assembly.cards import part_rows, step_card, totals
+from assembly.plan import piece_weights, plan_of
+from assembly.printout import sequence_pdf, write_sequence
+from assembly.steps import Plan
+
+FIRST_PAGES = 3
+
+
+@pytest.fixture(scope="module")
+def plan(gridshell: Gridshell) -> Plan:
+    return plan_of(gridshell, 4, 25.0)
+
+
+@pytest.fixture(scope="module")
+def pages(plan: Plan, gridshell: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    path = tmp_path_factory.mktemp("booklet") / "sequence.pdf"
+    write_sequence(plan, gridshell, path)
+    return [" ".join(page.extract_text().split()) for page in PdfReader(path).pages]
+
+
+@pytest.fixture(scope="module")
+def one_shell(gridshell: Gridshell) -> Gridshell:
+    return replace(gridshell, shells=gridshell.shells[:1])
+
+
+def test_cover_how_and_list_are_followed_by_one_page_a_step(plan: Plan, pages: list[str]) -> None:
+    assert len(pages) == FIRST_PAGES + len(plan.steps)
+
+
+def test_each_card_says_what_to_do_with_what_and_after_what(plan: Plan, pages: list[str]) -> None:
+    titles = {step.id: step.title for step in plan.steps}
+    for step, page in zip(plan.steps, pages[FIRST_PAGES:], strict=True):
+        assert page.startswith(f"{step.number} {step.title}")
+        for words in (*step.tools, *(titles[before] for before in step.predecessors)):
+            assert words in page
+        assert ("HOLD" in page) == bool(step.hold)
+        # Line ends and ligatures may fall into a sentence; its first words tell that it is there.
+        assert all(" ".join(line.split()[:2]) in page for line in step.instructions)
+
+
+def test_the_list_of_steps_names_every_step(plan: Plan, pages: list[str]) -> None:
+    listing = " ".join(pages[:FIRST_PAGES])
+    assert all(f"{step.number} {step.title}" in listing for step in plan.steps)
+
+
+def test_the_cover_counts_the_parts_of_the_vault(pages: list[str], gridshell: Gridshell) -> None:
+    beams = sum(len(shell.beams) for shell in gridshell.shells)
+    assert f"coupled beams {beams}" in pages[0]
+    assert f"planks {sum(len(shell.planks) for shell in gridshell.shells)}" in pages[0]
+    assert gridshell.title in pages[0]
+
+
+def test_pages_are_a4(plan: Plan, one_shell: Gridshell) -> None:
+    reader = PdfReader(BytesIO(sequence_pdf(plan_of(one_shell, 4, 25.0), one_shell)))
+    for page in reader.pages:
+        # 210 x 297 mm in points, to the rounding of the writer.
+        assert float(page.mediabox.width) == pytest.approx(595.28, abs=0.01)
+        assert float(page.mediabox.height) == pytest.approx(841.89, abs=0.01)
+
+
+def test_the_same_plan_gives_the_same_bytes_without_a_date(one_shell: Gridshell) -> None:
+    plan = plan_of(one_shell, 4, 25.0)
+    pdf = sequence_pdf(plan, one_shell)
+    assert pdf == sequence_pdf(plan, one_shell)
+    metadata = PdfReader(BytesIO(pdf)).metadata
+    assert metadata is not None
+    assert metadata.creation_date is None
+    assert not re.search(rb"(CreationDate|ModDate|CreateDate)", pdf)
+
+
+def test_fasteners_are_counted_by_size_with_their_joints(plan: Plan, gridshell: Gridshell) -> None:
+    parts = {bolt.mark: bolt for shell in gridshell.shells for bolt in shell.bolts}
+    marks = tuple(f"S1-N-{i:03d}-B{j}" for i in (1, 2, 3) for j in (1, 2, 3, 4))
+    bolt = parts[marks[0]]
+    assert part_rows(parts, marks) == [
+        ["12", f"Bolt M{bolt.diameter:g} x {bolt.length:g}", "at N-001 to N-003, 4 each"]
+    ]
+
+
+def test_the_parts_of_a_card_add_up_to_its_step(plan: Plan, gridshell: Gridshell) -> None:
+    weights = piece_weights(gridshell)
+    parts = {
+        part.mark: part
+        for shell in gridshell.shells
+        for part in (*shell.planks, *shell.studs, *shell.blocks, *shell.bolts, *shell.screws)
+    }
+    for step in plan.steps:
+        card = step_card(gridshell, plan, step, parts, weights)
+        if card["parts"]:
+            assert sum(int(row[0]) for row in card["parts"]) == len(step.marks)
+
+
+def test_the_totals_count_each_part_once(gridshell: Gridshell) -> None:
+    table = totals(gridshell, piece_weights(gridshell))
+    *kinds, whole = table["rows"]
+    assert sum(int(row[2]) for row in kinds) == int(whole[2])
+    assert int(whole[2]) == sum(
+        len(shell.planks) + len(shell.studs) + len(shell.blocks) + len(shell.bolts) + len(shell.screws)
+        for shell in gridshell.shells
+    )
+
+
+def test_a_folder_in_the_way_is_an_error_and_nothing_is_left_behind(one_shell: Gridshell, tmp_path: Path) -> None:
+    target = tmp_path / "sequence.pdf"
+    target.mkdir()
+    (target / "kept.txt").write_text("kept", encoding="utf-8")
+    with pytest.raises(FileError, match=r"sequence\.pdf"):
+        write_sequence(plan_of(one_shell, 4, 25.0), one_shell, target)
+    assert [path.name for path in tmp_path.iterdir()] == ["sequence.pdf"]
+    assert (target / "kept.txt").read_text(encoding="utf-8") == "kept"
