@@ -54,7 +54,9 @@ def silhouette(rings: Floats) -> tuple[Floats, Floats]:
     return np.concatenate([left, right[::-1]]), centre
 
 
-def _outline(shells: Sequence[tuple[Shell, Floats]], view: View, width: float, margin: float) -> Outline:
+def _outline(
+    shells: Sequence[tuple[Shell, Floats]], view: View, width: float, margin: float, with_origin: bool = False
+) -> Outline:
     """Return shells, each moved by a (4, 4) matrix, in a view on a sheet of a given width, with a margin all round."""
 
     def flat(points: Floats, matrix: Floats) -> Floats:
@@ -67,7 +69,7 @@ def _outline(shells: Sequence[tuple[Shell, Floats]], view: View, width: float, m
     rings = {plank.mark: (plank_rings(plank), matrix) for plank, matrix in planks}
     seen = {mark: flat(r.reshape(-1, 3), m).reshape(len(r), 4, 2) for mark, (r, m) in rings.items()}
     joints = {joint.mark: flat(np.array([joint.point]), m)[0] for shell, m in shells for joint in shell.joints}
-    corners = np.concatenate([points.reshape(-1, 2) for points in seen.values()])
+    corners = np.concatenate([*(points.reshape(-1, 2) for points in seen.values()), np.zeros((int(with_origin), 2))])
     low, high = corners.min(axis=0), corners.max(axis=0)
     scale = (width - 2.0 * margin) / float(high[0] - low[0])
     drawn = {mark: silhouette((points - low) * scale + margin) for mark, points in seen.items()}
@@ -96,6 +98,6 @@ def elevation_outline(shell: Shell, width: float, margin: float) -> Outline:
 
 
 def vault_outline(gridshell: Gridshell, width: float, margin: float) -> Outline:
-    """Return all shells in plan."""
+    """Return all shells in plan, the centre on the sheet."""
     placed = [(shell, frame_matrix(shell.placement)) for shell in gridshell.shells]
-    return _outline(placed, vault_view(), width, margin)
+    return _outline(placed, vault_view(), width, margin, with_origin=True)

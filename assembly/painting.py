@@ -9,7 +9,7 @@ from aag_cad.units import Floats, Ints
 
 _CELL = 1.6
 _TOUCH = 6.0
-_SAMPLES = (11, 7)
+_MOST_SAMPLES = 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,14 +21,35 @@ class Samples:
     depth: Floats
 
 
+def _counts(flat: Floats) -> Ints:
+    """Return how many samples each face (n, 4, 2) needs along its first and second side, (n, 2): one a cell."""
+    sides = np.linalg.norm(flat - np.roll(flat, -1, axis=1), axis=2)
+    longest = np.stack([np.maximum(sides[:, 1], sides[:, 3]), np.maximum(sides[:, 0], sides[:, 2])], axis=1)
+    return np.clip(np.ceil(longest / _CELL).astype(np.int64), 2, _MOST_SAMPLES)
+
+
+def _spread(flat: Floats, depth: Floats, counts: Ints) -> tuple[Floats, Floats]:
+    """Return places (n, s, 2) and distances (n, s) of counts[0] x counts[1] samples in the middles of their cells."""
+    u, v = (g.ravel() for g in np.meshgrid(*((np.arange(n) + 0.5) / n for n in counts.tolist()), indexing="ij"))
+    weights = np.stack([(1 - u) * (1 - v), (1 - u) * v, u * v, u * (1 - v)])
+    return np.einsum("ncj,cs->nsj", flat, weights), np.asarray(depth @ weights)
+
+
 def samples_of(flat: Floats, depth: Floats) -> Samples:
     """Return samples of faces with sheet corners (n, 4, 2) and corner distances (n, 4)."""
-    u, v = (g.ravel() for g in np.meshgrid(*(np.linspace(0.04, 0.96, n) for n in _SAMPLES), indexing="ij"))
-    weights = np.stack([(1 - u) * (1 - v), (1 - u) * v, u * v, u * (1 - v)])
-    cells = np.floor(np.einsum("ncj,cs->nsj", flat, weights) / _CELL).astype(np.int64)
-    cells -= cells.min(axis=(0, 1))
-    keys = cells[..., 1] * (cells[..., 0].max() + 1) + cells[..., 0]
-    return Samples(keys.ravel(), np.repeat(np.arange(len(flat)), len(u)), (depth @ weights).ravel())
+    counts = _counts(flat)
+    kinds, kind = np.unique(counts, axis=0, return_inverse=True)
+    places, depths, owners = [], [], []
+    for i, pair in enumerate(kinds):
+        faces = np.flatnonzero(kind.ravel() == i)
+        place, distance = _spread(flat[faces], depth[faces], pair)
+        places.append(place.reshape(-1, 2))
+        depths.append(distance.ravel())
+        owners.append(np.repeat(faces, distance.shape[1]))
+    cells = np.floor(np.concatenate(places) / _CELL).astype(np.int64)
+    cells -= cells.min(axis=0)
+    keys = cells[:, 1] * (cells[:, 0].max() + 1) + cells[:, 0]
+    return Samples(keys, np.concatenate(owners), np.concatenate(depths))
 
 
 def unhidden(samples: Samples) -> Ints:
