@@ -100,7 +100,7 @@ def gridshell_of(design: Design) -> Gridshell:
 
 
 def _write_gridshell(model: Model, _plan: "Plan", folder: Path) -> None:
-    from aag_cad.export.files import write_text
+    from aag_cad.files import write_text
     from aag_cad.parts.store import gridshell_json
 
     write_text(folder / "gridshell.json", gridshell_json(model.gridshell))
@@ -133,7 +133,7 @@ def _write_tables(model: Model, _plan: "Plan", folder: Path) -> None:
 
 
 def _write_plan(_model: Model, plan: "Plan", folder: Path) -> None:
-    from aag_cad.export.files import write_text
+    from aag_cad.files import write_text
     from assembly.plan import plan_json
 
     write_text(folder / "plan.json", plan_json(plan))

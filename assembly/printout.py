@@ -9,7 +9,7 @@ from typing import Any
 
 import typst
 
-from aag_cad.errors import FileError
+from aag_cad.files import write_bytes
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.resources import template
 from assembly.cards import PHASE_NAMES, step_card, totals
@@ -83,15 +83,4 @@ def sequence_pdf(plan: Plan, gridshell: Gridshell) -> bytes:
 
 def write_sequence(plan: Plan, gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     """Write the booklet as an A4 PDF file; FileError if it cannot be written, and then nothing is left behind."""
-    target = Path(path)
-    pdf = sequence_pdf(plan, gridshell)
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".writing-", dir=target.parent) as name:
-            draft = Path(name) / target.name
-            draft.write_bytes(pdf)
-            os.replace(draft, target)
-    except OSError as error:
-        raise FileError(
-            f"{target}: cannot be written ({error.strerror or error}); choose a folder that you may write to"
-        ) from error
+    write_bytes(path, sequence_pdf(plan, gridshell))

@@ -265,6 +265,13 @@ def test_what_is_not_toml_is_said_to_be_none(text: str) -> None:
     assert "not valid TOML" in refusal(text)
 
 
+def test_a_file_saved_with_a_byte_order_mark_is_read_like_any_other(tmp_path: Path, design: Design) -> None:
+    """Some editors put it before the first sign of a UTF-8 file, where nobody sees it."""
+    path = tmp_path / "mine.toml"
+    path.write_text(VAULT, encoding="utf-8-sig")
+    assert load_design(str(path)) == design
+
+
 def test_the_message_begins_with_the_file_that_was_read(tmp_path: Path) -> None:
     path = tmp_path / "bad.toml"
     path.write_text("[project", encoding="utf-8")

@@ -7,8 +7,8 @@ import numpy as np
 import trimesh
 from trimesh.visual.material import PBRMaterial
 
-from aag_cad.export.files import write_bytes
 from aag_cad.export.ifc_kinds import colour, colour_name
+from aag_cad.files import write_bytes
 from aag_cad.parts.mesh import Mesh, frame_matrix, product_mesh
 from aag_cad.parts.model import Frame, Gridshell, Part, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name

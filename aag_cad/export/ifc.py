@@ -3,7 +3,6 @@
 import os
 from collections.abc import Mapping, Sequence
 
-from aag_cad.export.files import replacing
 from aag_cad.export.ifc_base import Entity, IfcModel, aggregate, guid, local_placement, spatial_tree, start_file
 from aag_cad.export.ifc_bodies import mapped_shape
 from aag_cad.export.ifc_joints import joints_of, write_joints
@@ -11,6 +10,7 @@ from aag_cad.export.ifc_kinds import IFC_KINDS
 from aag_cad.export.ifc_properties import write_piece_sets, write_product_sets
 from aag_cad.export.ifc_schedule import write_schedule
 from aag_cad.export.ifc_types import Product, associate_materials, define_types, products
+from aag_cad.files import replacing
 from aag_cad.parts.assemblies import beam_of_parts
 from aag_cad.parts.model import Frame, Gridshell, Part, Shell, all_parts, shell_parts
 from aag_cad.parts.products import part_frame

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typst
 
-from aag_cad.export.files import write_bytes, write_text
+from aag_cad.files import write_bytes, write_text
 from aag_cad.parts.model import Gridshell
 from assembly.perspective import perspective_svg
 

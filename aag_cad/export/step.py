@@ -26,8 +26,8 @@ from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTo
 
 from aag_cad import __version__
 from aag_cad.errors import SolidError
-from aag_cad.export.files import write_bytes
 from aag_cad.export.ifc_kinds import colour
+from aag_cad.files import write_bytes
 from aag_cad.parts.assemblies import beam_of_parts
 from aag_cad.parts.model import Frame, Gridshell, Shell, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name

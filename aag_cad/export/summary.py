@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from aag_cad.audit import Finding, forming_stresses
-from aag_cad.export.files import write_text
+from aag_cad.files import write_text
 from aag_cad.network.extent import ShellExtent
 from aag_cad.parts.model import Gridshell, all_parts, shell_parts
 from aag_cad.parts.quantities import kind, mass, material

@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Iterable, Sequence
 
-from aag_cad.export.files import write_text
+from aag_cad.files import write_text
 from aag_cad.mechanics.lamella import lamella_stress
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.model import Gridshell, Part, Plank, Timber, all_parts

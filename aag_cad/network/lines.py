@@ -60,7 +60,7 @@ def _inside_intervals(region: Region, slope: int, intercept: float, step: float)
 
 
 def asymptotic_lines(region: Region, step: float, row_offset: float) -> list[ChartLine]:
-    """Return every second A line of both families inside the region, from left to right, numbered from 1.
+    """Return every second A line of both families inside the region, by rising theta, numbered from 1.
 
     A1: theta - s = (2m - row_offset) step, A2: theta + s = (2m + row_offset) step: with every G line between two
     columns of AA nodes this is the tri-hex pattern (paper section 3.1).
@@ -76,7 +76,7 @@ def asymptotic_lines(region: Region, step: float, row_offset: float) -> list[Cha
 
 
 def geodesic_lines(region: Region, count: int) -> list[ChartLine]:
-    """Return the G lines (meridians) from the left side to the right side, numbered from 1."""
+    """Return the G lines (meridians) by rising theta, numbered from 1."""
     angles = np.linspace(-region.half, region.half, count)
     return [
         ChartLine(CurveId("G", i), 0, float(theta), 0.0, float(region.ridge(abs(theta))))

@@ -11,7 +11,10 @@ CrossingKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "ridge"]
 
 
 class CurveId(NamedTuple):
-    """Family and number (from 1) of a curve; E 1 is the bottom, E 2 and E 3 are the left and right ridge plank."""
+    """Family and number (from 1) of a curve; E 1 is the bottom, E 2 and E 3 are the ridge planks.
+
+    Numbers rise with theta: from left to right for someone who stands inside, at the centre of the vault.
+    """
 
     family: Family
     number: int

@@ -54,7 +54,8 @@ def _radius(back: Floats, ahead: Floats) -> Floats:
     chord = np.linalg.norm(ahead - back, axis=-1)
     double_area = np.linalg.norm(np.cross(back, ahead), axis=-1)
     product = np.linalg.norm(back, axis=-1) * np.linalg.norm(ahead, axis=-1) * chord
-    return np.asarray(product / np.maximum(2.0 * double_area, 1e-300))
+    straight = np.full_like(product, np.inf)
+    return np.asarray(np.divide(product, 2.0 * double_area, out=straight, where=double_area > 1e-9 * product))
 
 
 def star_normals(web: Web) -> Floats:

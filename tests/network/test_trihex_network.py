@@ -10,6 +10,7 @@ import pytest
 from aag_cad.design import Design
 from aag_cad.geometry.framed import curvatures_at, frames_at
 from aag_cad.geometry.revolution import AsymptoticChart
+from aag_cad.network.build import shell_network
 from aag_cad.network.model import Crossing, CrossingKind, CurveId, CurveNetwork, NetworkCurve
 from aag_cad.units import Floats
 
@@ -52,11 +53,11 @@ def lattice(design: Design, chart: AsymptoticChart) -> set[tuple[int, int]]:
     return nodes
 
 
-def without_short_beams(nodes: set[tuple[int, int]]) -> set[tuple[int, int]]:
-    """Return the nodes that stay when beams with fewer than three nodes are left out, one round after another."""
+def without_short_beams(nodes: set[tuple[int, int]], least: int) -> set[tuple[int, int]]:
+    """Return the nodes that stay when beams with fewer nodes than ``least`` are left out, one round after another."""
     while True:
         count = Counter(line for k, j in nodes for line in (("A1", k - j), ("A2", k + j)))
-        kept = {(k, j) for k, j in nodes if count["A1", k - j] >= 3 and count["A2", k + j] >= 3}
+        kept = {(k, j) for k, j in nodes if min(count["A1", k - j], count["A2", k + j]) >= least}
         if kept == nodes:
             return kept
         nodes = kept
@@ -77,11 +78,22 @@ def test_there_are_92_places_for_aa_nodes_and_88_nodes_on_beams_of_three(
     """An independent enumeration of the lattice; beams with one or two nodes are left out."""
     places = lattice(design, chart)
     assert len(places) == 92
-    kept = without_short_beams(places)
+    kept = without_short_beams(places, 3)
     assert len(kept) == 88
     nodes = chart_places(design, np.array([node.point for node in of_kind(network, "AA")]))
     expected = np.array(sorted(((j + 0.5) * design.step, k * design.step) for k, j in kept))
     np.testing.assert_allclose(nodes[np.lexsort((nodes[:, 1], nodes[:, 0].round(6)))], expected, atol=1e-9)
+
+
+def test_leaving_out_short_beams_shortens_others(design: Design, chart: AsymptoticChart) -> None:
+    """With at least six nodes a beam, the nodes of a beam left out are gone from its partners too: 88 become fewer."""
+    expected = without_short_beams(lattice(design, chart), 6)
+    six = design.model_copy(update={"pattern": design.pattern.model_copy(update={"min_nodes": 6})})
+    found = shell_network(six, chart)
+    count = Counter(curve for node in of_kind(found, "AA") for curve in node.curves)
+    assert len(of_kind(found, "AA")) == len(expected) < 88
+    assert min(count.values()) >= 6
+    assert set(count) == {beam.id for beam in beams(found)}
 
 
 def test_every_beam_has_at_least_three_aa_nodes(network: CurveNetwork) -> None:

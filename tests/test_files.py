@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from aag_cad.errors import FileError
-from aag_cad.export.files import replacing, write_bytes, write_text
+from aag_cad.files import replacing, write_bytes, write_text
 
 
 def test_text_is_written_as_utf8_with_its_own_line_ends(tmp_path: Path) -> None:
