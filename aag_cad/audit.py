@@ -128,7 +128,7 @@ def clash_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
 
 
 def joint_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
-    """Yield AAG501 (a part without a joint) and AAG502 (a joint that names a part that is not there)."""
+    """Yield AAG501 (part without joint), AAG502 (joint whose part is missing) and AAG503 (joint without fastener)."""
     joints = [joint for shell in gridshell.shells for joint in shell.joints] + list(gridshell.joints)
     named = {mark: joint.mark for joint in joints for mark in (*joint.members, *joint.fasteners)}
     present = {part.mark for part in all_parts(gridshell)}
@@ -137,6 +137,10 @@ def joint_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     for mark in sorted(set(named) - present):
         what = f"is missing, but named by joint {named[mark]}; parts"
         yield Finding("AAG502", "error", mark, what, 0, 1, "", "add the part or mend the joint")
+    for joint in joints:
+        if not joint.fasteners:
+            what = f"{joint.kind} joint of {' and '.join(joint.members)}: fasteners"
+            yield Finding("AAG503", "note", joint.mark, what, 0, 1, "", "fix the plank ends with shoe, blade or screws")
 
 
 def bolt_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:

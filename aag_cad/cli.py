@@ -80,10 +80,10 @@ def _findings_table(findings: list[dict[str, Any]]) -> Table:
     table = Table(title="Findings", title_justify="left", show_lines=False)
     for column in ("code", "severity", "count", "the furthest from what is allowed"):
         table.add_column(column)
-    kinds: dict[tuple[str, str, str], list[dict[str, Any]]] = {}
+    kinds: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for finding in findings:
-        kinds.setdefault((finding["severity"], finding["code"], finding["what"]), []).append(finding)
-    for (severity, code, _), group in list(kinds.items())[:_MOST_ROWS]:
+        kinds.setdefault((finding["severity"], finding["code"]), []).append(finding)
+    for (severity, code), group in list(kinds.items())[:_MOST_ROWS]:
         worst = max(group, key=lambda f: abs(f["found"] - f["allowed"]))
         table.add_row(code, severity, str(len(group)), worst["text"])
     if len(kinds) > _MOST_ROWS:

@@ -16,7 +16,9 @@ Number: TypeAlias = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 Positive: TypeAlias = Annotated[Number, Field(gt=0)]
 NotNegative: TypeAlias = Annotated[Number, Field(ge=0)]
 Count: TypeAlias = Annotated[int, Field(strict=True)]
-Text: TypeAlias = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=80)]
+Text: TypeAlias = Annotated[
+    str, StringConstraints(strip_whitespace=True, min_length=1, max_length=80, pattern=r"^[^\x00-\x1f]+$")
+]
 Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]*$", max_length=40)]
 
 
@@ -73,7 +75,7 @@ SurfaceSection: TypeAlias = Annotated[
 class Shells(Section):
     """How many shells meet about the centre, and which part of the surface each takes."""
 
-    count: Annotated[Count, Field(ge=3, le=12)]
+    count: Annotated[Count, Field(ge=3, le=9)]
     axis_distance: Positive = Field(description="mm from the centre to the vertical axis of each shell")
     sector_deg: Annotated[Number, Field(gt=0, lt=180)]
 
@@ -348,7 +350,7 @@ def design_text(name_or_path: str) -> tuple[str, str]:
     shipped = name_or_path in shipped_designs()
     path = template("designs", f"{name_or_path}.toml") if shipped else Path(name_or_path)
     try:
-        return path.read_text(encoding="utf-8"), name_or_path
+        return path.read_text(encoding="utf-8-sig"), name_or_path
     except FileNotFoundError as error:
         names = ", ".join(shipped_designs())
         raise FileError(f"{name_or_path}: no such design file, and not a shipped design ({names})") from error

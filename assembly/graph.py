@@ -1,6 +1,6 @@
 """The gridshell as a graph: every part a node, every joint the edges between the parts that meet in it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import combinations
 from typing import TypedDict
 
@@ -8,6 +8,7 @@ import networkx as nx
 import numpy as np
 
 from aag_cad.geometry.framed import FramedCurve
+from aag_cad.parts.assemblies import beam_of_parts
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import (
@@ -61,16 +62,6 @@ def part_point(part: Part) -> Floats:
     return np.array(frame.origin)
 
 
-def beams_of_blocks(joints: tuple[Joint, ...], beam_of: Mapping[str, str]) -> dict[str, str]:
-    """Return the beam of every block: that of the planks it is joined with, by mark (``beam_of`` plank -> beam)."""
-    found: dict[str, str] = {}
-    for joint in joints:
-        beams = sorted({beam_of[mark] for mark in joint.members if beam_of.get(mark)})
-        if len(beams) == 1:
-            found |= {mark: beams[0] for mark in joint.members if mark not in beam_of}
-    return found
-
-
 def joint_of(mark: str) -> str:
     """Return the mark of the joint that a bolt or screw belongs to."""
     return mark.rpartition("-")[0]
@@ -110,12 +101,10 @@ def assembly_graph(gridshell: Gridshell) -> "nx.MultiGraph[str]":
     layers: dict[str, int] = {}
     for shell in gridshell.shells:
         placements |= {part.mark: shell.placement for part in shell_parts(shell)}
-        of_plank = {plank.mark: plank.beam for plank in shell.planks}
-        of_block = beams_of_blocks(shell.joints, of_plank)
-        beams |= of_plank | {block.mark: of_block.get(block.mark, "") for block in shell.blocks}
-        of_beam = {beam.mark: beam.layer for beam in shell.beams}
+        home, of_beam = beam_of_parts(shell), {beam.mark: beam.layer for beam in shell.beams}
+        beams |= home
         layers |= {plank.mark: plank.layer for plank in shell.planks}
-        layers |= {block.mark: of_beam[beams[block.mark]] for block in shell.blocks if beams[block.mark]}
+        layers |= {block.mark: of_beam[home[block.mark]] for block in shell.blocks if block.mark in home}
     for part in all_parts(gridshell):
         graph.add_node(
             part.mark,

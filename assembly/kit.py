@@ -7,9 +7,9 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from aag_cad.parts.assemblies import beam_of_parts
 from aag_cad.parts.model import Joint, Shell, shell_parts
 from assembly.errors import PlanError
-from assembly.graph import beams_of_blocks
 
 Group: TypeAlias = Literal["beams", "studs", "edges", "outside", "inside", "standing"]
 
@@ -87,7 +87,8 @@ def _homes(shell: Shell, block_beam: dict[str, str]) -> dict[tuple[Group, str], 
 
 def shell_kit(shell: Shell) -> Kit:
     """Return what goes with what in a shell; PlanError with the marks of parts that no joint names."""
-    block_beam = beams_of_blocks(shell.joints, {plank.mark: plank.beam for plank in shell.planks})
+    home = beam_of_parts(shell)
+    block_beam = {block.mark: home[block.mark] for block in shell.blocks if block.mark in home}
     homes = _homes(shell, block_beam)
 
     def group(name: Group, marks: Iterable[str]) -> dict[str, tuple[str, ...]]:

@@ -35,8 +35,11 @@ def test_the_vault_has_no_error_and_says_which_bolts_sit_near_the_ridge_ends(
     design: Design, gridshell: Gridshell
 ) -> None:
     found = audit(design, gridshell)
-    assert Counter((f.code, f.severity) for f in found) == {("AAG201", "warning"): 24}
-    assert all("loaded" in f.text and "80 mm" in f.text for f in found)
+    assert Counter((f.code, f.severity) for f in found) == {("AAG201", "warning"): 24, ("AAG503", "note"): 87}
+    near = [f for f in found if f.code == "AAG201"]
+    assert all("loaded" in f.text and "80 mm" in f.text for f in near)
+    unfixed = {f.mark[3] for f in found if f.code == "AAG503"}
+    assert unfixed == {"F", "R"}, "shoes and blades are not placed yet: 14 feet, 14 ridge ends and the crown per shell"
 
 
 def test_a_tighter_limit_turns_every_geodesic_into_a_finding(design: Design, gridshell: Gridshell) -> None:
@@ -112,11 +115,11 @@ def test_a_clash_names_both_marks_and_the_depth(design: Design, gridshell: Grids
 
 
 def test_a_part_without_joint_and_a_joint_without_its_part_are_found(design: Design, gridshell: Gridshell) -> None:
-    assert not list(joint_findings(design, gridshell))
+    assert {f.code for f in joint_findings(design, gridshell)} == {"AAG503"}
     first = gridshell.shells[0]
     orphan = replace(first.screws[0], mark="S1-K-999-W1")
     swapped = replace(gridshell, shells=(replace(first, screws=(orphan, *first.screws[1:])), *gridshell.shells[1:]))
-    found = {(f.code, f.mark) for f in joint_findings(design, swapped)}
+    found = {(f.code, f.mark) for f in joint_findings(design, swapped) if f.severity == "error"}
     assert found == {("AAG501", "S1-K-999-W1"), ("AAG502", first.screws[0].mark)}
 
 

@@ -49,6 +49,10 @@ def parse_mark(text: str) -> Mark:
         raise MarkError(
             f"{text!r} is not a mark; marks look like S1, S1-A1-07, S1-A1-07-L, S1-G-05, S1-N-031 or R12-03"
         )
+    if not mark.shell and mark.family[1] == mark.family[2]:
+        raise MarkError(f"{text!r} is not a mark: a ridge blade joins two different shells, as in R12-03")
+    if mark.part and (mark.part in "LR") != (mark.family in ("A1", "A2")):
+        raise MarkError(f"{text!r} is not a mark: only planks of A beams end in L or R, only fasteners in B1 or W1")
     if str(mark) != text or (mark.family and mark.index == 0):
         raise MarkError(f"{text!r} is not a mark as it is printed; {str(mark)!r} would be, with indices from 1")
     return mark
