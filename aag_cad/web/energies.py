@@ -1,7 +1,7 @@
 """The paper's energies (1) to (6) over a web, one function each: residuals and a sparse Jacobian with true derivatives.
 
-In the vertex star of v_i, d_1 to d_4 are the diagonal neighbours (up right, up left, down left, down right): the A lines
-run d_1, v_i, d_3 and d_2, v_i, d_4. v_a and v_c are the neighbours on the G line (up, down). The normal is eliminated,
+In the star of v_i, d_1 to d_4 are the diagonal neighbours (up right, up left, down left, down right). The A lines run
+d_1, v_i, d_3 and d_2, v_i, d_4. v_a and v_c are the neighbours on the G line (up, down). The normal is eliminated,
 n = (d_1 - d_3) x (d_2 - d_4) / |.|, where the paper keeps it as an auxiliary unknown; residuals are free of scale where
 the web has a mean edge of 1.
 """
