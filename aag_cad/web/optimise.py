@@ -26,10 +26,10 @@ from aag_cad.web.web import Web
 Report = Callable[[Iteration], None]
 
 BOTTOM_WEIGHT = 10.0
-_COARSE_COLUMNS = 20
-_CONTROLS = 12
+_COARSE_COLUMNS = 30
+_CONTROLS = 14
 _SPLINE_STEPS = 40
-_MESH_STEPS = 12
+_MESH_STEPS = 40
 _FIRST_FAIRNESS = 1e-2
 _LAST_FAIRNESS = 1e-8
 _MESH_FAIRNESS = 1e-5
@@ -144,7 +144,7 @@ def _descend(stage: _Stage, vertices: Floats, method: Method, done: list[Iterati
             linear, energies = _linearised(stage, vertices, weight, method)
         elif method.levenberg_marquardt:
             kept, damping = vertices, max(damping / 5.0, _DAMPING)
-        slow = slow + 1 if weight <= last and energy > 0.7 * best else 0
+        slow = slow + 1 if weight <= last and energy > 0.95 * best else 0
         best = min(best, energy)
         step = gauss_newton_step(linear.jacobian, linear.residuals, damping, method.factorisation)
         move = np.asarray(stage.to_vertices @ step).reshape(vertices.shape)
@@ -161,7 +161,7 @@ def _descend(stage: _Stage, vertices: Floats, method: Method, done: list[Iterati
 
 
 def _refinement(columns: int, rows_above: int) -> int:
-    """Return how many fine cells make a coarse one: the divisor that comes nearest to 20 coarse columns."""
+    """Return how many fine cells make a coarse one: the divisor that comes nearest to 30 coarse columns."""
     divisors = [k for k in range(1, columns) if columns % k == 0 and rows_above % k == 0 and columns // k >= 8]
     return min(divisors, key=lambda k: abs(columns / k - _COARSE_COLUMNS), default=1)
 
@@ -175,8 +175,13 @@ def _coarse_points(points: tuple[PointGoal, ...], bottom: int, below: int, k: in
     )
 
 
+def _control_count(samples: int) -> int:
+    """Return how many control points a direction gets: too many for its samples, and the spline can zigzag too."""
+    return min(_CONTROLS, max(6, int(0.6 * samples)))
+
+
 def _spline_stage(web: Floats, goals: Goals, method: Method, done: list[Iteration], report: Report) -> Floats:
-    """Return the web after optimising the control points of a quintic B-spline on a web of about 400 vertices."""
+    """Return the web after optimising the control points of a quintic B-spline on a web of about 900 vertices."""
     rows, columns, _ = web.shape
     bottom = goals.bottom_row or 0
     below = 0 if goals.bottom_row is None else 1
@@ -184,7 +189,7 @@ def _spline_stage(web: Floats, goals: Goals, method: Method, done: list[Iteratio
     coarse_rows = np.arange(-below * k, rows - bottom, k, dtype=np.float64)
     coarse_columns = np.arange(0, columns, k, dtype=np.float64)
     bounds = ((min(-float(bottom), coarse_rows[0]), rows - 1.0 - bottom), (0.0, columns - 1.0))
-    controls = min(_CONTROLS, len(coarse_rows)), min(_CONTROLS, len(coarse_columns))
+    controls = _control_count(len(coarse_rows)), _control_count(len(coarse_columns))
     free = mirrored(controls[0], controls[1], goals.symmetric)
     # The ghost row of the coarse web may lie under those of the given one: the start is continued there.
     fine_rows = np.arange(rows, dtype=np.float64) - bottom
