@@ -1,4 +1,4 @@
-"""Meridians of surfaces of revolution: constant-ratio (CRPC), catenoid, hyperboloid of one sheet, spline."""
+"""Meridians of surfaces of revolution: constant-ratio (CRPC), catenoid, hyperboloid of one sheet, arc, spline."""
 
 import math
 from dataclasses import dataclass
@@ -96,6 +96,25 @@ class HyperboloidProfile:
     def from_asymptotic(self, s: Floats) -> Floats:
         """Return u = 2 artanh tan(s/2), for |s| < pi/2."""
         return 2.0 * np.arctanh(np.tan(s / 2.0))
+
+
+@dataclass(frozen=True)
+class ArcProfile:
+    """Meridian of one radius R, r = r0 + R (1 - cos u), z = R sin u: vertical at the neck, bulging to the axis."""
+
+    neck_radius: float
+    meridian_radius: float
+    domain: tuple[float, float] = (-1.5, 1.5)
+
+    def radius(self, u: Floats) -> Floats:
+        """Return r and its first three derivatives by u as (4, n), mm."""
+        cos, sin = self.meridian_radius * np.cos(u), self.meridian_radius * np.sin(u)
+        return np.array([self.neck_radius + self.meridian_radius - cos, sin, cos, -sin])
+
+    def height(self, u: Floats) -> Floats:
+        """Return z and its first three derivatives by u as (4, n), mm."""
+        cos, sin = self.meridian_radius * np.cos(u), self.meridian_radius * np.sin(u)
+        return np.array([sin, cos, -sin, -cos])
 
 
 @dataclass(frozen=True)
