@@ -7,54 +7,14 @@ the web has a mean edge of 1.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from aag_cad.units import Floats, Ints
+from aag_cad.web.stars import coplanar, points_of, row_dot, stars, through_normal
 from aag_cad.web.terms import Term, stacked, term, vertex_numbers
 from aag_cad.web.web import Web
-
-
-@dataclass(frozen=True, eq=False)
-class _Star:
-    """Stars of all inner vertices: numbers (m,), the A diagonals u and w, the normal and the length of u x w."""
-
-    centre: Ints
-    corners: tuple[Ints, Ints, Ints, Ints]
-    u: Floats
-    w: Floats
-    normal: Floats
-    area: Floats
-
-
-def _points(web: Web) -> Floats:
-    return web.vertices.reshape(-1, 3)
-
-
-def _row_dot(a: Floats, b: Floats) -> Floats:
-    return np.asarray(np.einsum("ij,ij->i", a, b))
-
-
-def _stars(web: Web) -> _Star:
-    number = vertex_numbers(*web.vertices.shape[:2])
-    corners = (
-        number[2:, 2:].ravel(), number[2:, :-2].ravel(), number[:-2, :-2].ravel(), number[:-2, 2:].ravel(),
-    )  # fmt: skip
-    x = _points(web)
-    u, w = x[corners[0]] - x[corners[2]], x[corners[1]] - x[corners[3]]
-    cross = np.cross(u, w)
-    area = np.linalg.norm(cross, axis=1)
-    return _Star(number[1:-1, 1:-1].ravel(), corners, u, w, cross / area[:, None], area)
-
-
-def _through_normal(star: _Star, towards: Floats) -> list[tuple[Ints, Floats]]:
-    """Return the derivatives of n . towards by the corners, with ``towards`` (m, 3) held."""
-    g = (towards - _row_dot(towards, star.normal)[:, None] * star.normal) / star.area[:, None]
-    by_u, by_w = np.cross(star.w, g), np.cross(g, star.u)
-    first, second, third, fourth = star.corners
-    return [(first, by_u), (third, -by_u), (second, by_w), (fourth, -by_w)]
 
 
 def a_net(web: Web) -> Term:
@@ -62,29 +22,13 @@ def a_net(web: Web) -> Term:
 
     With the normal at right angles to both A diagonals, opposite neighbours have equal residuals, so two say all.
     """
-    star, x, unknowns = _stars(web), _points(web), web.vertices.size
+    star, x, unknowns = stars(web), points_of(web), web.vertices.size
     parts = []
     for corner in star.corners[:2]:
         edge = x[corner] - x[star.centre]
-        derivatives = [(corner, star.normal), (star.centre, -star.normal), *_through_normal(star, edge)]
-        parts.append(term(_row_dot(star.normal, edge), derivatives, unknowns))
+        derivatives = [(corner, star.normal), (star.centre, -star.normal), *through_normal(star, edge)]
+        parts.append(term(row_dot(star.normal, edge), derivatives, unknowns))
     return stacked(parts)
-
-
-def _coplanar(web: Web, star: _Star, ahead: Ints, behind: Ints) -> Term:
-    """Return n . (a x c) / |a||c| with a, c the edges to two neighbours: zero where a, c and n lie in one plane."""
-    x = _points(web)
-    a, c = x[ahead] - x[star.centre], x[behind] - x[star.centre]
-    length_a, length_c = np.linalg.norm(a, axis=1)[:, None], np.linalg.norm(c, axis=1)[:, None]
-    a, c = a / length_a, c / length_c
-    cross = np.cross(a, c)
-    by_a, by_c = np.cross(c, star.normal), np.cross(star.normal, a)
-    by_a = (by_a - _row_dot(by_a, a)[:, None] * a) / length_a
-    by_c = (by_c - _row_dot(by_c, c)[:, None] * c) / length_c
-    derivatives = [
-        (ahead, by_a), (behind, by_c), (star.centre, -by_a - by_c), *_through_normal(star, cross),
-    ]  # fmt: skip
-    return term(_row_dot(star.normal, cross), derivatives, web.vertices.size)
 
 
 def geodesic(web: Web) -> Term:
@@ -93,7 +37,7 @@ def geodesic(web: Web) -> Term:
     Without the division the residual is of third order in the edge length and vanishes beside the others.
     """
     number = vertex_numbers(*web.vertices.shape[:2])
-    return _coplanar(web, _stars(web), number[2:, 1:-1].ravel(), number[:-2, 1:-1].ravel())
+    return coplanar(web, stars(web), number[2:, 1:-1].ravel(), number[:-2, 1:-1].ravel())
 
 
 def constant_angle(web: Web, angle: float) -> Term:
@@ -101,20 +45,20 @@ def constant_angle(web: Web, angle: float) -> Term:
 
     t_i1 = (e_i1 - e_i3) / |.|, t_i2 = (e_i2 - e_i4) / |.| with unit edges e_ij; all norms are differentiated.
     """
-    star, x = _stars(web), _points(web)
+    star, x = stars(web), points_of(web)
     edges = [x[corner] - x[star.centre] for corner in star.corners]
     lengths = [np.linalg.norm(edge, axis=1)[:, None] for edge in edges]
     units = [edge / length for edge, length in zip(edges, lengths, strict=True)]
     sums = (units[0] - units[2], units[1] - units[3])
     norms = [np.linalg.norm(s, axis=1)[:, None] for s in sums]
     t1, t2 = (s / norm for s, norm in zip(sums, norms, strict=True))
-    cosine = _row_dot(t1, t2)
+    cosine = row_dot(t1, t2)
     by_sum = ((t2 - cosine[:, None] * t1) / norms[0], (t1 - cosine[:, None] * t2) / norms[1])
     derivatives: list[tuple[Ints, Floats]] = []
     total = np.zeros_like(t1)
     for k, corner in enumerate(star.corners):
         by_unit = by_sum[k % 2] * (1.0 if k < 2 else -1.0)
-        by_edge = (by_unit - _row_dot(by_unit, units[k])[:, None] * units[k]) / lengths[k]
+        by_edge = (by_unit - row_dot(by_unit, units[k])[:, None] * units[k]) / lengths[k]
         derivatives.append((corner, by_edge))
         total = total + by_edge
     derivatives.append((star.centre, -total))
@@ -130,8 +74,8 @@ def bottom_curve(web: Web, row: int) -> Term:
     number = vertex_numbers(rows, columns)
     on_row = number[row]
     up = np.tile([0.0, 0.0, 1.0], (columns, 1))
-    flat = term(_points(web)[on_row, 2], [(on_row, up)], web.vertices.size)
-    turning = _coplanar(web, _stars(web), number[1:-1, :-2].ravel(), number[1:-1, 2:].ravel())
+    flat = term(points_of(web)[on_row, 2], [(on_row, up)], web.vertices.size)
+    turning = coplanar(web, stars(web), number[1:-1, :-2].ravel(), number[1:-1, 2:].ravel())
     chosen = slice((row - 1) * (columns - 2), row * (columns - 2))
     return stacked([flat, Term(turning.residuals[chosen], csr_array(turning.jacobian[chosen]))])
 
@@ -145,7 +89,7 @@ def symmetry(web: Web) -> Term:
     number = vertex_numbers(rows, columns)
     half = (columns + 1) // 2
     left, right = number[:, :half].ravel(), number[:, ::-1][:, :half].ravel()
-    x = _points(web)
+    x = points_of(web)
     parts = []
     for axis, sign in ((0, -1.0), (1, 1.0), (2, -1.0)):
         along = np.zeros((len(left), 3))
@@ -169,7 +113,7 @@ def fairness(web: Web, reference: Floats) -> Term:
         (number[1:-1, 1:-1], number[2:, :-2], number[:-2, 2:]),
     ]
     middle, one, other = (np.concatenate([t[k].ravel() for t in triples]) for k in range(3))
-    moved = _points(web) - reference.reshape(-1, 3)
+    moved = points_of(web) - reference.reshape(-1, 3)
     bend = 2.0 * moved[middle] - moved[one] - moved[other]
     parts = []
     for axis in range(3):

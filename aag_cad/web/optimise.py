@@ -16,6 +16,7 @@ from aag_cad.errors import DesignError
 from aag_cad.units import Floats
 from aag_cad.web.energies import a_net, bottom_curve, constant_angle, fairness, geodesic
 from aag_cad.web.goals import Goals, Iteration, Optimised, PointGoal, Reason
+from aag_cad.web.nets import largest_bending, largest_twist
 from aag_cad.web.normal_equations import Factorisation, best_factorisation, gauss_newton_step
 from aag_cad.web.quality import WebQuality, quality
 from aag_cad.web.targets import bending_radius, closeness, height, held_points, span, twist
@@ -220,36 +221,61 @@ def _mesh_stage(
     return _descend(stage, web / edge, method, done, report) * edge
 
 
+def _limits(web: Web, goals: Goals) -> list[tuple[str, float, float]]:
+    """Return what is measured of a web against its goals: name, figure found, figure allowed."""
+    measures, v = quality(web), web.vertices
+    edge, row, middle = mean_edge(v), goals.bottom_row or 0, v.shape[1] // 2
+    limits = [
+        ("planarity per edge", measures.planarity_per_edge, PLANARITY),
+        ("geodesic deviation in degrees", measures.geodesic_deviation_deg, GEODESIC_DEG),
+    ]
+    if goals.angle is not None:
+        cosine = constant_angle(web, goals.angle).residuals + math.cos(goals.angle)
+        error = np.abs(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)) - goals.angle)).max()
+        limits.append(("angle error in degrees", float(error), ANGLE_DEG))
+    if goals.bottom_row is not None:
+        lift = float(np.abs(v[row, :, 2]).max()) / edge
+        limits.append(("height of the bottom curve per edge", lift, BOTTOM_PER_EDGE))
+    sizes = [
+        ("height", goals.height, float(v[-1, middle, 2] - v[row, middle, 2])),
+        ("span", goals.span, float(np.linalg.norm(v[row, -1] - v[row, 0]))),
+    ]
+    limits += [(f"{name} off by", abs(found / wish - 1.0), SIZE) for name, wish, found in sizes if wish is not None]
+    misses = [float(np.linalg.norm(v[p.row, p.column] - p.point)) / edge for p in goals.points]
+    if misses:
+        limits.append(("distance of held points per edge", max(misses), SIZE))
+    if goals.min_radius is not None:
+        limits.append(("curvature over that of the smallest radius", goals.min_radius * _bending(web), 1.0 + SIZE))
+    if goals.max_twist is not None:
+        limits.append(("twist over the largest", float(largest_twist(web).max()) / goals.max_twist, 1.0 + SIZE))
+    return limits
+
+
+def _bending(web: Web) -> float:
+    return float(largest_bending(web).max())
+
+
 def _verdict(web: Web, before: WebQuality, after: WebQuality, goals: Goals) -> tuple[Reason, str]:
-    """Return why the optimiser stopped, and the measure that says so."""
+    """Return why the optimiser stopped, and the measures that say so."""
     if after.normal_turning_deg < before.normal_turning_deg / 5.0:
         return "collapsed", (
             f"the normals turn by {after.normal_turning_deg:.1f} degrees, at the start by "
             f"{before.normal_turning_deg:.1f}: the web has become flat"
         )
-    row = goals.bottom_row or 0
-    rise = float(web.vertices[-1, web.vertices.shape[1] // 2, 2] - web.vertices[row, web.vertices.shape[1] // 2, 2])
-    if goals.height is not None and abs(rise / goals.height - 1.0) > SIZE:
-        return "left the design's range", f"height {rise:.0f} mm, asked for {goals.height:.0f} mm"
-    ratios = [a / b for a, b in zip(after.extent, before.extent, strict=True) if b > 0.0]
-    if not all(0.5 < ratio < 2.0 for ratio in ratios):
-        sizes = " x ".join(f"{size:.0f}" for size in after.extent)
-        return "left the design's range", f"the web measures {sizes} mm; hold height, span or points"
-    limits = [
-        ("planarity per edge", after.planarity_per_edge, PLANARITY),
-        ("geodesic deviation in degrees", after.geodesic_deviation_deg, GEODESIC_DEG),
-    ]
-    if goals.angle is not None:
-        asked = math.degrees(min(goals.angle, math.pi - goals.angle))
-        error = max(abs(after.angle_aa_deg.min - asked), abs(after.angle_aa_deg.max - asked))
-        limits.append(("angle error in degrees", error, ANGLE_DEG))
-    if goals.bottom_row is not None:
-        lift = float(np.abs(web.vertices[row, :, 2]).max()) / mean_edge(web.vertices)
-        limits.append(("height of the bottom curve per edge", lift, BOTTOM_PER_EDGE))
-    missed = [f"{name} {found:.1e}, allowed {allowed:.0e}" for name, found, allowed in limits if found > allowed]
+    if not _in_range(web.vertices, before):
+        found, asked = (" x ".join(f"{size:.0f}" for size in q.extent) for q in (after, before))
+        return "left the design's range", f"the web measures {found} mm, at the start {asked} mm; goals may conflict"
+    limits = _limits(web, goals)
+    missed = [f"{name} {found:.1e}, allowed {allowed:.0e}" for name, found, allowed in limits if not found <= allowed]
     if missed:
         return "stalled", "; ".join(missed)
     return "converged", "; ".join(f"{name} {found:.1e}" for name, found, _ in limits)
+
+
+def _in_range(vertices: Floats, before: WebQuality) -> bool:
+    """Return whether the extent in every direction is between half and double that of the start."""
+    extent = np.ptp(vertices.reshape(-1, 3), axis=0)
+    return all(0.5 * b < a < 2.0 * b for a, b in zip(extent, before.extent, strict=True) if b > 0.0)
 
 
 def optimise(
@@ -258,7 +284,8 @@ def optimise(
     """Return the web that satisfies the goals, or the nearest that was reached with the reason (paper section 2.2).
 
     The vertices (rows, columns, 3) are in mm, with ghost rows under ``goals.bottom_row`` if there is one; symmetric
-    webs are mirrored about their middle column. DesignError if the web is too small or the goals do not fit it.
+    webs are mirrored about their middle column. A web that satisfies its goals already comes back as it is.
+    DesignError if the web is too small or the goals do not fit it.
     """
     rows, columns, _ = web.vertices.shape
     if rows < 8 or columns < 8:
@@ -267,11 +294,15 @@ def optimise(
         raise DesignError(
             f"optimise.bottom_row: {goals.bottom_row}; allowed 1 to {rows - 8}: one ghost row under it at least"
         )
-    chosen = method or Method(factorisation=best_factorisation())
+    chosen, before = method or Method(factorisation=best_factorisation()), quality(web)
     done: list[Iteration] = []
-    smooth = _spline_stage(web.vertices, goals, chosen, done, report)
-    if not np.all(np.isfinite(smooth)):
-        return Optimised(web, "collapsed", "the spline stage has no finite step", tuple(done), web.vertices)
-    found = Web(_mesh_stage(smooth, web.vertices, goals, chosen, done, report))
-    reason, explanation = _verdict(found, quality(web), quality(found), goals)
+    found = web
+    if any(not value <= allowed for _, value, allowed in _limits(web, goals)):
+        smooth = _spline_stage(web.vertices, goals, chosen, done, report)
+        found = Web(smooth)
+        if np.all(np.isfinite(smooth)) and _in_range(smooth, before):
+            found = Web(_mesh_stage(smooth, web.vertices, goals, chosen, done, report))
+    if not np.all(np.isfinite(found.vertices)):
+        return Optimised(web, "collapsed", "a step of the optimiser was not finite", tuple(done), web.vertices)
+    reason, explanation = _verdict(found, before, quality(found), goals)
     return Optimised(found, reason, explanation, tuple(done), web.vertices)

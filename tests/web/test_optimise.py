@@ -98,6 +98,14 @@ def test_a_shaken_exact_web_comes_back() -> None:
     assert found.success, found.explanation
 
 
+def test_an_exact_web_comes_back_untouched() -> None:
+    exact = crpc_web(5100.0, 3.0, -8823.0, np.linspace(-HALF, HALF, 21), 1, 19)
+    found = optimise(exact, Goals(angle=ANGLE, bottom_row=1))
+    assert found.success
+    assert found.iterations == ()
+    assert found.web is exact
+
+
 def test_fairness_on_positions_flattens_the_web_and_is_caught() -> None:
     """Eq. (6) read literally: a flat lattice is a perfect zero of every other energy."""
     web = start_web(circular_arc(), 1)
