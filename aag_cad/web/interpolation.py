@@ -1,0 +1,120 @@
+"""The smooth surface through a web: a tensor-product B-spline over the grid, with its A and G curves."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import NdBSpline, make_interp_spline
+
+from aag_cad.errors import SurfaceError
+from aag_cad.geometry.darboux import ParameterCurve, darboux
+from aag_cad.geometry.framed import FramedCurve, framed_curve
+from aag_cad.geometry.surface import Jet, unit_normals
+from aag_cad.units import Floats
+from aag_cad.web.web import Web
+
+_SAMPLES_PER_CELL = 4
+
+
+@dataclass(frozen=True, eq=False)
+class InterpolatedSurface:
+    """A C2 surface X(u, v) through the vertices of a web: vertex (i, j) is X(i step, j step).
+
+    Its A lines are v = c +- u, its G lines v = const, as in the charts of surfaces of revolution. ``knots`` and
+    ``degrees`` are those of u and v; ``control`` (rows, columns, 3) are the control points, mm.
+    """
+
+    step: float
+    degrees: tuple[int, int]
+    knots: tuple[Floats, Floats]
+    control: Floats
+
+    @property
+    def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The ranges of u and v."""
+        u, v = self.knots
+        return (float(u[0]), float(u[-1])), (float(v[0]), float(v[-1]))
+
+    def jet(self, u: Floats, v: Floats) -> Jet:
+        """Return the 2-jet at the parameters u, v, each (n,) float; SurfaceError outside the web."""
+        places = []
+        for name, values, (low, high) in zip("uv", (u, v), self.domain, strict=True):
+            # A hair's breadth outside is rounding, not a point outside the web.
+            slack = 1e-9 * (high - low)
+            wrong = ~((values >= low - slack) & (values <= high + slack))
+            if np.any(wrong):
+                raise SurfaceError(
+                    f"web: the point {name} = {float(values[wrong][0]):.4f} lies outside the web, which covers {name} "
+                    f"from {low:.4f} to {high:.4f}; add rows or columns to the web"
+                )
+            places.append(np.clip(values, low, high))
+        spline = NdBSpline(self.knots, self.control, self.degrees)
+        at = np.column_stack(places)
+        orders = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+        return Jet(*(np.asarray(spline(at, nu=order), dtype=np.float64) for order in orders))
+
+
+def interpolated_surface(web: Web, step: float) -> InterpolatedSurface:
+    """Return the B-spline surface through all vertices of a web, quintic where the web has six rows and columns.
+
+    ``step`` is the parameter length of a cell, equal in both directions, so that the diagonals of the grid are
+    v = c +- u. A web of n < 6 rows is one polynomial piece of degree n - 1 in that direction.
+    """
+    if not (math.isfinite(step) and step > 0.0):
+        raise SurfaceError(f"web: the step {step!r} of the interpolation must be positive")
+    rows, columns = web.vertices.shape[:2]
+    if min(rows, columns) < 3:
+        raise SurfaceError(f"web: {rows} x {columns} vertices; a surface needs at least 3 x 3: refine the web")
+    degrees = min(5, rows - 1), min(5, columns - 1)
+    by_u = make_interp_spline(step * np.arange(rows), web.vertices, k=degrees[0], axis=0)
+    by_v = make_interp_spline(step * np.arange(columns), by_u.c, k=degrees[1], axis=1)
+    # SciPy keeps the axis of interpolation first among the coefficients.
+    control = np.moveaxis(by_v.c, 0, 1)
+    return InterpolatedSurface(step, degrees, (by_u.t, by_v.t), np.ascontiguousarray(control, dtype=np.float64))
+
+
+def surface_line(surface: InterpolatedSurface, slope: int, intercept: float) -> FramedCurve:
+    """Return the line v = intercept + slope u over the whole web, by rising u, with the surface's normals.
+
+    Slope +1 and -1 give A curves, 0 gives a G curve. SurfaceError if it misses the web.
+    """
+    (low, high), (left, right) = surface.domain
+    if slope:
+        ends = sorted(((left - intercept) / slope, (right - intercept) / slope))
+        low, high = max(low, ends[0]), min(high, ends[1])
+    outside = not slope and not left <= intercept <= right
+    if outside or high - low < 1e-6 * surface.step:
+        raise SurfaceError(f"web: the line v = {intercept:.4f} {slope:+d} u misses the web; choose another intercept")
+
+    def evaluate(u: Floats) -> tuple[Floats, Floats]:
+        jet = surface.jet(u, intercept + slope * u)
+        return jet.point, unit_normals(jet)
+
+    rough = evaluate(np.linspace(low, high, 50))[0]
+    return framed_curve(evaluate, low, high, float(np.linalg.norm(np.diff(rough, axis=0), axis=1).sum()))
+
+
+def a_curve_normal_curvature(web: Web) -> float:
+    """Return the largest |kappa_n| of both families of A curves on the interpolated surface, 1/mm.
+
+    It is zero on a perfect web. One cell at the border is left out, where nothing holds the spline from outside.
+    SurfaceError if nothing is left.
+    """
+    rows, columns = web.vertices.shape[:2]
+    if min(rows, columns) < 5:
+        raise SurfaceError(
+            f"web: {rows} x {columns} vertices; without the border cells at least 5 x 5 are needed to measure curvature"
+        )
+    surface = interpolated_surface(web, 1.0)
+    u, v = (
+        grid.ravel()
+        for grid in np.meshgrid(
+            *(np.linspace(1.0, n - 2.0, _SAMPLES_PER_CELL * (n - 3) + 1) for n in (rows, columns)), indexing="ij"
+        )
+    )
+    jet = surface.jet(u, v)
+    one, zero = np.ones_like(u), np.zeros_like(u)
+    return max(
+        float(np.abs(darboux(jet, ParameterCurve(u, v, one, sign * one, zero, zero)).normal_curvature).max())
+        for sign in (1.0, -1.0)
+    )
