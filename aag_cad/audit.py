@@ -18,6 +18,8 @@ Severity: TypeAlias = Literal["error", "warning", "note"]
 
 CONTACT = 1.0
 AXIS_TOLERANCE = 0.1
+ANGLE_SPAN_DEG = 1.0
+BOW = 1.0
 _ROUNDING = 0.05
 
 
@@ -175,6 +177,41 @@ def _axis_distance(bolt: Bolt, point: Floats) -> float:
     return float(np.linalg.norm(np.cross(point - np.array(bolt.frame.origin), np.array(bolt.frame.z))))
 
 
+def _node_angles_deg(shell: Shell) -> Floats:
+    """Return the angles (n,) at which the two beams of each AA node cross, degrees up to 90."""
+    spans = [np.ptp([hole.angle for hole in stud.holes]) for stud in shell.studs if stud.holes]
+    return np.degrees([abs((span + np.pi / 2.0) % np.pi - np.pi / 2.0) for span in spans])
+
+
+def angle_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG701: AA nodes of a shell differ in angle, or are all alike but not at 60 degrees (paper, Fig. 3)."""
+    for shell in gridshell.shells:
+        angles = _node_angles_deg(shell)
+        if not len(angles):
+            continue
+        low, high, off = float(angles.min()), float(angles.max()), float(np.abs(angles - 60.0).max())
+        if high - low > ANGLE_SPAN_DEG:
+            what = f"beams cross at {low:.1f} to {high:.1f} degrees, a span of"
+            remedy = "one stud does not fill every node: optimise the web, or take a crpc surface"
+            yield Finding("AAG701", "warning", shell.mark, what, high - low, ANGLE_SPAN_DEG, "deg", remedy)
+        elif off > ANGLE_SPAN_DEG:
+            what = f"beams cross at {low:.1f} to {high:.1f} degrees, off the equal angles of 60 degrees by"
+            remedy = "a hexagonal stud does not lie flat against both beams: take a crpc surface of ratio 3"
+            yield Finding("AAG701", "note", shell.mark, what, off, ANGLE_SPAN_DEG, "deg", remedy)
+
+
+def boundary_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG702: boundary planks along a curve that is no geodesic, so that no straight plank lies on it."""
+    for plank in _planks(gridshell):
+        if plank.family != "E":
+            continue
+        bow = lamella_stress(plank, gridshell.timber).bow
+        if bow > BOW:
+            what = "the boundary is no geodesic; unrolled, the plank leaves its chord by"
+            remedy = "saw it curved from a wider board, or crop along a geodesic"
+            yield Finding("AAG702", "warning", plank.mark, what, bow, BOW, "mm", remedy)
+
+
 CHECKS: tuple[Check, ...] = (
     forming_findings,
     hole_findings,
@@ -182,6 +219,8 @@ CHECKS: tuple[Check, ...] = (
     clash_findings,
     joint_findings,
     bolt_findings,
+    angle_findings,
+    boundary_findings,
 )
 _ORDER = {"error": 0, "warning": 1, "note": 2}
 

@@ -6,7 +6,16 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    StringConstraints,
+    Tag,
+    ValidationError,
+    model_validator,
+)
 
 from aag_cad.errors import DesignError, FileError
 from aag_cad.resources import template
@@ -19,6 +28,10 @@ Count: TypeAlias = Annotated[int, Field(strict=True)]
 Text: TypeAlias = Annotated[
     str, StringConstraints(strip_whitespace=True, min_length=1, max_length=80, pattern=r"^[^\x00-\x1f]+$")
 ]
+# A hexagon turned by 30 degrees is wider by 1 / cos 30: between 60 degree nodes and that, a stud has to be thinner.
+_LEAST_FLATS = math.cos(math.radians(30.0))
+_KINDS = {"surface": ("profile", "crpc, catenoid, hyperboloid, spline"), "shells": ("top", "ridge, mirror, level")}
+
 Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]*$", max_length=40)]
 
 
@@ -72,12 +85,49 @@ SurfaceSection: TypeAlias = Annotated[
 ]
 
 
-class Shells(Section):
-    """How many shells meet about the centre, and which part of the surface each takes."""
+class RidgeShells(Section):
+    """Three or more shells about the centre, intersected and cropped where they meet (paper, Fig. 2d)."""
 
+    top: Literal["ridge"] = "ridge"
     count: Annotated[Count, Field(ge=3, le=9)]
     axis_distance: Positive = Field(description="mm from the centre to the vertical axis of each shell")
     sector_deg: Annotated[Number, Field(gt=0, lt=180)]
+
+
+class MirrorShells(Section):
+    """A shell cropped by the vertical plane through the centre, and its mirror image (paper, Fig. 2b)."""
+
+    top: Literal["mirror"]
+    count: Literal[2] = 2
+    axis_distance: Positive = Field(description="mm from the mirror plane to the vertical axis of each shell")
+    sector_deg: Annotated[Number, Field(gt=0, le=120)]
+
+
+class LevelShells(Section):
+    """Shells cropped along parallel circles, open in sectors or closed about their axis (paper, Fig. 2a and c)."""
+
+    top: Literal["level"]
+    top_height: Positive = Field(description="mm from the neck up to the top edge")
+    bottom_height: Annotated[Number, Field(le=0)] = Field(
+        0.0, description="mm from the neck down to the bottom edge; below the neck lies the flipped surface"
+    )
+    count: Annotated[Count, Field(ge=1, le=9)]
+    axis_distance: NotNegative = Field(description="mm from the centre to the vertical axis of each shell")
+    sector_deg: Annotated[Number, Field(gt=0, le=360)]
+
+
+def _kind_of_top(value: object) -> str | None:
+    if isinstance(value, dict):
+        return str(value.get("top", "ridge"))
+    return getattr(value, "top", None)
+
+
+ShellsSection: TypeAlias = Annotated[
+    Annotated[RidgeShells, Tag("ridge")]
+    | Annotated[MirrorShells, Tag("mirror")]
+    | Annotated[LevelShells, Tag("level")],
+    Discriminator(_kind_of_top),
+]
 
 
 class Pattern(Section):
@@ -183,7 +233,7 @@ class Design(Section):
 
     project: Project
     surface: SurfaceSection
-    shells: Shells
+    shells: ShellsSection
     pattern: Pattern
     timber: Timber
     joints: Joints
@@ -197,8 +247,9 @@ class Design(Section):
     def _fits_together(self) -> "Design":
         limit = 180.0 - 360.0 / self.shells.count
         rules = (
+            *self._level_rules(),
             (
-                self.shells.sector_deg <= limit,
+                self.shells.top != "ridge" or self.shells.sector_deg <= limit,
                 f"shells.sector_deg: {self.shells.sector_deg:g} is too wide for {self.shells.count} shells; "
                 f"at most {limit:g}, or neighbouring shells rise again beyond the entry: narrow the sector",
             ),
@@ -213,9 +264,10 @@ class Design(Section):
                 f"{self.timber.width:g} mm; swap the two",
             ),
             (
-                self.joints.stud_across_flats == self.joints.gap,
+                _LEAST_FLATS * self.joints.gap <= self.joints.stud_across_flats <= self.joints.gap,
                 f"joints.stud_across_flats: {self.joints.stud_across_flats:g} mm does not fill joints.gap "
-                f"{self.joints.gap:g} mm; make them equal",
+                f"{self.joints.gap:g} mm; make them equal, or at least {_LEAST_FLATS * self.joints.gap:.1f} mm where "
+                "beams do not cross at 60 degrees",
             ),
             (
                 self.joints.bolt_diameter <= self.joints.bolt_hole <= self.joints.bolt_diameter + 1.0,
@@ -274,10 +326,37 @@ class Design(Section):
             raise ValueError("\n".join(broken))
         return self
 
+    def _level_rules(self) -> tuple[tuple[bool, str], ...]:
+        shells = self.shells
+        if not isinstance(shells, LevelShells):
+            return ()
+        return (
+            (
+                shells.count == 1 or shells.sector_deg <= 180.0,
+                f"shells.sector_deg: {shells.sector_deg:g} for {shells.count} shells that stand apart; at most 180, "
+                "or shells.count = 1",
+            ),
+            (
+                shells.count == 1 or shells.axis_distance > 0.0,
+                f"shells.axis_distance: 0 puts all {shells.count} shells in one place; enlarge it or take "
+                "shells.count = 1",
+            ),
+        )
+
+    @property
+    def closed(self) -> bool:
+        """Whether the shell runs all the way round its axis, without side planks."""
+        return self.shells.sector_deg == 360.0
+
+    @property
+    def bottom_height(self) -> float:
+        """Height of the bottom edge over the neck or ground line of the surface, mm; not positive."""
+        return self.shells.bottom_height if isinstance(self.shells, LevelShells) else 0.0
+
     @property
     def step(self) -> float:
         """Angle between neighbouring geodesics about the shell's axis, radians."""
-        return math.radians(self.shells.sector_deg) / (self.pattern.geodesics - 1)
+        return math.radians(self.shells.sector_deg) / (self.pattern.geodesics - (0 if self.closed else 1))
 
     @property
     def ground_spacing(self) -> float:
@@ -307,18 +386,19 @@ def _explain(error: ValidationError) -> str:
     """Return one line per fault: the key's path, what was found, what is allowed."""
     lines = []
     for fault in error.errors():
-        # Surfaces are told apart by their profile; its name is in the location of a fault but not in the file.
-        place = [str(part) for i, part in enumerate(fault["loc"]) if not (i == 1 and fault["loc"][0] == "surface")]
+        # Surfaces and shells are told apart by a key; its value is in the location of a fault but not in the file.
+        place = [str(part) for i, part in enumerate(fault["loc"]) if not (i == 1 and fault["loc"][0] in _KINDS)]
         path = ".".join(place)
         if not path:
             lines.append(str(fault["msg"]).removeprefix("Value error, "))
         elif fault["type"] == "extra_forbidden":
             lines.append(f"{path}: unknown key; remove it or check its spelling (`aag schema` lists all keys)")
         elif fault["type"] == "union_tag_not_found":
-            lines.append("surface.profile: missing; one of crpc, catenoid, hyperboloid, spline")
+            key, kinds = _KINDS[path]
+            lines.append(f"{path}.{key}: missing; one of {kinds}")
         elif fault["type"] == "union_tag_invalid":
-            tag = fault["input"].get("profile")
-            lines.append(f"surface.profile: {tag!r} is none of crpc, catenoid, hyperboloid, spline")
+            key, kinds = _KINDS[path]
+            lines.append(f"{path}.{key}: {fault['input'].get(key)!r} is none of {kinds}")
         elif fault["type"] == "missing":
             lines.append(f"{path}: missing; `aag new` writes a commented file that has it")
         else:

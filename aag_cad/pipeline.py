@@ -16,8 +16,8 @@ from aag_cad.errors import DesignError, FileError
 from aag_cad.geometry.profiles import CrpcProfile, HyperboloidProfile, Profile, SplineProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.network.build import shell_network
+from aag_cad.network.edges import bottom_coordinate, top_coordinate
 from aag_cad.network.extent import ShellExtent, shell_extent
-from aag_cad.network.ridge import ridge_coordinate
 from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.model import Gridshell
 from aag_cad.web.quality import WebQuality, quality
@@ -68,18 +68,19 @@ def chart_of(design: Design) -> AsymptoticChart:
 
 
 def web_of(design: Design, chart: AsymptoticChart) -> Web:
-    """Return the web over the sector, from one step under the ground line to the crown, in half steps of the pattern.
+    """Return the web over the sector, from one step under the ground line to the top, in half steps of the pattern.
 
     On a CRPC surface it is the exact discrete web, on others the smooth chart is sampled.
     """
     step = design.step / 2.0
-    rows = int(np.ceil(ridge_coordinate(chart, 0.0, design.shells.count, 0.0) / step))
-    columns = 2 * (design.pattern.geodesics - 1)
+    rows = int(np.ceil(top_coordinate(design, chart, 0.0) / step))
+    below = int(np.ceil(-bottom_coordinate(design, chart) / step))
+    columns = round(2.0 * design.half_sector / step)
     theta = np.linspace(-design.half_sector, design.half_sector, columns + 1)
     profile = chart.surface.profile
     if isinstance(profile, CrpcProfile):
-        return crpc_web(profile.neck_radius, profile.ratio, chart.surface.axis_x, theta, 2, rows)
-    return sampled_web(chart, step * np.arange(rows + 1, dtype=np.float64), np.asarray(theta, dtype=np.float64))
+        return crpc_web(profile.neck_radius, profile.ratio, chart.surface.axis_x, theta, max(2, below), rows)
+    return sampled_web(chart, step * np.arange(-below, rows + 1, dtype=np.float64), np.asarray(theta, dtype=np.float64))
 
 
 def model_of(design: Design, report: Report = lambda stage: None) -> Model:

@@ -2,25 +2,24 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from aag_cad.design import Design
+from aag_cad.design import Design, LevelShells
 from aag_cad.errors import NetworkError
 from aag_cad.geometry.framed import FramedCurve, framed_curve, nearest_station
 from aag_cad.geometry.revolution import AsymptoticChart
 from aag_cad.geometry.surface import unit_normals
 from aag_cad.network.crop import kept_crossings, trimmed_curves
-from aag_cad.network.lines import ChartLine, Region, asymptotic_lines, crossing_of, geodesic_lines
-from aag_cad.network.model import Crossing, CrossingKind, CurveId, CurveNetwork, Family
-from aag_cad.network.ridge import RidgeLine, ridge_coordinate, ridge_distance, ridge_line, surface_points
+from aag_cad.network.edges import EdgeLine, edge_at, level_edges, level_region, ridge_boundary
+from aag_cad.network.lines import ChartLine, Region, asymptotic_lines, crossings_of, geodesic_lines
+from aag_cad.network.model import LEFT_RIDGE, RIGHT_RIDGE, Crossing, CrossingKind, CurveId, CurveNetwork, Family
+from aag_cad.network.ridge import ridge_distance, surface_points
 from aag_cad.units import Floats, vector
 
-BOTTOM = CurveId("E", 1)
-LEFT_RIDGE = CurveId("E", 2)
-RIGHT_RIDGE = CurveId("E", 3)
 _MARGIN = 300.0
+_ON_EDGE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -33,22 +32,22 @@ class _Meeting:
     theta: float
 
 
-def _ridge_of(theta: float) -> CurveId:
-    return LEFT_RIDGE if theta < 0 else RIGHT_RIDGE
-
-
-def _aa_meetings(design: Design, chart: AsymptoticChart, lines: list[ChartLine]) -> list[_Meeting]:
-    """Return the AA nodes clear of foot and ridge, without those of beams that have fewer than ``min_nodes``."""
+def _aa_meetings(design: Design, chart: AsymptoticChart, region: Region, lines: list[ChartLine]) -> list[_Meeting]:
+    """Return the AA nodes clear of bottom and top, without those of beams that have fewer than ``min_nodes``."""
     pattern = design.pattern
-    found = []
-    for a in (line for line in lines if line.slope > 0):
-        for b in (line for line in lines if line.slope < 0):
-            if (place := crossing_of(a, b)) is not None:
-                found.append(_Meeting("AA", (a.id, b.id), *place))
+    found = [
+        _Meeting("AA", (a.id, b.id), *place)
+        for a in (line for line in lines if line.slope > 0)
+        for b in (line for line in lines if line.slope < 0)
+        for place in crossings_of(a, b, region.closed)
+    ]
     s, theta = np.array([(node.s, node.theta) for node in found]).T
     points = surface_points(chart, s, theta)
-    foot = np.linalg.norm(points - surface_points(chart, np.zeros_like(s), theta), axis=1)
+    foot = np.linalg.norm(points - surface_points(chart, np.full_like(s, region.bottom), theta), axis=1)
     ridge = ridge_distance(points, design.shells.count)
+    if isinstance(design.shells, LevelShells):
+        top = surface_points(chart, np.full_like(s, region.highest), theta)
+        ridge = np.minimum(ridge, np.linalg.norm(points - top, axis=1))
     clear = (foot >= pattern.node_clearance_foot) & (ridge >= pattern.node_clearance_ridge)
     nodes = [node for node, free in zip(found, clear, strict=True) if free]
     while True:
@@ -59,23 +58,23 @@ def _aa_meetings(design: Design, chart: AsymptoticChart, lines: list[ChartLine])
         nodes = kept
 
 
-def _boundary_meetings(region: Region, lines: Iterable[ChartLine]) -> list[_Meeting]:
-    """Return where A lines end on the bottom or a ridge; where they end on a side they cross a G line there."""
+def _boundary_meetings(region: Region, edges: tuple[EdgeLine, ...], lines: Iterable[ChartLine]) -> list[_Meeting]:
+    """Return where A lines end on the bottom or the top; where they end on a side they cross a G line there."""
     meetings = []
     for line in lines:
         for s in (line.low, line.high):
             theta = float(line.theta(np.array([s]))[0])
-            if abs(s) < 1e-6:
-                meetings.append(_Meeting("boundary", (line.id, BOTTOM), 0.0, theta))
-            elif abs(s - float(region.ridge(min(abs(theta), region.half)))) < 1e-6:
-                meetings.append(_Meeting("boundary", (line.id, _ridge_of(theta)), s, theta))
+            if abs(s - region.bottom) < _ON_EDGE:
+                meetings.append(_Meeting("boundary", (line.id, edge_at(edges, "bottom", theta)), region.bottom, theta))
+            elif abs(s - region.top_at(theta)) < _ON_EDGE:
+                meetings.append(_Meeting("boundary", (line.id, edge_at(edges, "top", theta)), s, theta))
     return meetings
 
 
-def _meetings(design: Design, chart: AsymptoticChart, region: Region) -> tuple[list[ChartLine], list[_Meeting]]:
-    """Return the lines that become planks, renumbered without gaps, and all places where they meet."""
+def _beams(design: Design, chart: AsymptoticChart, region: Region) -> tuple[list[ChartLine], list[_Meeting]]:
+    """Return the A lines that become beams, renumbered without gaps, and their nodes."""
     every = asymptotic_lines(region, design.step, design.pattern.row_offset)
-    nodes = _aa_meetings(design, chart, every)
+    nodes = _aa_meetings(design, chart, region, every)
     used = {curve for node in nodes for curve in node.curves}
     if not used:
         raise NetworkError(
@@ -89,23 +88,26 @@ def _meetings(design: Design, chart: AsymptoticChart, region: Region) -> tuple[l
         for family in families
         for i, line in enumerate((x for x in every if x.id in used and x.id.family == family), start=1)
     }
-    beams = [
-        ChartLine(renamed[line.id], line.slope, line.intercept, line.low, line.high)
-        for line in every
-        if line.id in used
+    beams = [replace(line, id=renamed[line.id]) for line in every if line.id in used]
+    return beams, [replace(n, curves=(renamed[n.curves[0]], renamed[n.curves[1]])) for n in nodes]
+
+
+def _meetings(
+    region: Region, edges: tuple[EdgeLine, ...], beams: list[ChartLine], geodesics: list[ChartLine]
+) -> list[_Meeting]:
+    """Return all places where beams, geodesics and edge planks meet, but for the AA nodes."""
+    meetings = [
+        _Meeting("AG", (beam.id, g.id), *place)
+        for beam in beams
+        for g in geodesics
+        for place in crossings_of(beam, g, region.closed)
     ]
-    geodesics = geodesic_lines(region, design.pattern.geodesics)
-    meetings = [_Meeting("AA", (renamed[n.curves[0]], renamed[n.curves[1]]), n.s, n.theta) for n in nodes]
-    for beam in beams:
-        for g in geodesics:
-            if (place := crossing_of(beam, g)) is not None:
-                meetings.append(_Meeting("AG", (beam.id, g.id), *place))
-    meetings += _boundary_meetings(region, beams)
+    meetings += _boundary_meetings(region, edges, beams)
     for g in geodesics:
-        meetings.append(_Meeting("foot", (g.id, BOTTOM), 0.0, g.intercept))
-        meetings.append(_Meeting("ridge", (g.id, _ridge_of(g.intercept)), g.high, g.intercept))
-    meetings.append(_Meeting("ridge", (LEFT_RIDGE, RIGHT_RIDGE), float(region.ridge(0.0)), 0.0))
-    return beams + geodesics, meetings
+        foot, head = (edge_at(edges, place, g.intercept) for place in ("bottom", "top"))
+        meetings.append(_Meeting("foot", (g.id, foot), region.bottom, g.intercept))
+        meetings.append(_Meeting("ridge", (g.id, head), g.high, g.intercept))
+    return meetings
 
 
 def _framed(
@@ -130,15 +132,6 @@ def _line_curve(chart: AsymptoticChart, line: ChartLine) -> FramedCurve:
     return _framed(chart, lambda s: (s, line.theta(s)), line.low - before, line.high + after)
 
 
-def _edge_curves(chart: AsymptoticChart, ridge: RidgeLine, side: float) -> dict[CurveId, FramedCurve]:
-    """Return bottom, left and right edge curve; the ridges start past the side and end at the crown."""
-    return {
-        BOTTOM: _framed(chart, lambda theta: (np.zeros_like(theta), theta), -side, side),
-        LEFT_RIDGE: _framed(chart, lambda t: (ridge.path(t)[0], -ridge.path(t)[1]), 0.0, 1.0),
-        RIGHT_RIDGE: _framed(chart, ridge.path, 0.0, 1.0),
-    }
-
-
 def _crossings(chart: AsymptoticChart, curves: dict[CurveId, FramedCurve], meetings: list[_Meeting]) -> list[Crossing]:
     """Return the meetings as crossings with their arc-length stations on both curves."""
     jet = chart.jet(np.array([m.s for m in meetings]), np.array([m.theta for m in meetings]))
@@ -157,19 +150,21 @@ def _crossings(chart: AsymptoticChart, curves: dict[CurveId, FramedCurve], meeti
 
 
 def shell_network(design: Design, chart: AsymptoticChart) -> CurveNetwork:
-    """Return the curve network of one shell of a design (paper section 2.2, Fig. 6b and c).
+    """Return the curve network of one shell of a design (paper section 2.2, Fig. 2, 6b and c).
 
-    Tri-hex selection of A and G lines, crop at the ground, the side meridians and the ridge geodesics, joints, ends.
-    SurfaceError or NetworkError with the key to change where no buildable network comes out.
+    Tri-hex selection of A and G lines, crop at the bottom, the side meridians and the top, joints, ends. SurfaceError
+    or NetworkError with the key to change where no buildable network comes out.
     """
-    half, shells, overhang = design.half_sector, design.shells.count, design.boundary.end_overhang
-    neck, top = 0.0, ridge_coordinate(chart, half, shells, design.boundary.ridge_setback)
-    radii = np.linalg.norm(chart.jet(np.array([neck, top]), np.array([half, half])).dv, axis=1)
-    bottom_side, ridge_side = half + overhang / radii
-    ridge = ridge_line(chart, shells, float(ridge_side), design.boundary.ridge_setback)
-    region = Region(design.half_sector, ridge.height)
-    lines, meetings = _meetings(design, chart, region)
-    curves = {line.id: _line_curve(chart, line) for line in lines}
-    curves |= _edge_curves(chart, ridge, float(bottom_side))
+    level = isinstance(design.shells, LevelShells)
+    region, edges = (level_region(design, chart), ()) if level else ridge_boundary(design, chart)
+    beams, meetings = _beams(design, chart, region)
+    geodesics = geodesic_lines(region, design.pattern.geodesics)
+    if level:
+        edges = level_edges(design, chart, region, beams + geodesics)
+    meetings += _meetings(region, edges, beams, geodesics)
+    if not level:
+        meetings.append(_Meeting("ridge", (LEFT_RIDGE, RIGHT_RIDGE), region.top_at(0.0), 0.0))
+    curves = {line.id: _line_curve(chart, line) for line in beams + geodesics}
+    curves |= {edge.id: _framed(chart, edge.path, edge.low, edge.high) for edge in edges}
     crossings = kept_crossings(design, curves, _crossings(chart, curves, meetings))
     return CurveNetwork(tuple(trimmed_curves(design, curves, crossings)), tuple(crossings))

@@ -6,15 +6,15 @@ from collections.abc import Iterable
 import numpy as np
 from scipy.optimize import brentq
 
-from aag_cad.design import Design
+from aag_cad.design import Design, LevelShells
 from aag_cad.errors import NetworkError
 from aag_cad.geometry.framed import FramedCurve, frames_at
-from aag_cad.network.model import Crossing, CurveId, NetworkCurve
+from aag_cad.network.model import LEFT_RIDGE, RIGHT_RIDGE, Crossing, CurveId, NetworkCurve
 from aag_cad.network.ridge import ridge_distance
 from aag_cad.units import Floats
 
 _RANK = {"boundary": 0, "AA": 1, "AG": 2}
-_SCREW_END_DISTANCE = 7.0
+SCREW_END_DISTANCE = 7.0
 
 
 def _station_on(crossing: Crossing, curve: CurveId) -> float:
@@ -74,7 +74,7 @@ def kept_crossings(design: Design, curves: dict[CurveId, FramedCurve], crossings
     the blocks are too long for the mesh.
     """
     extents = _geodesic_extents(design, curves, crossings)
-    reach = _SCREW_END_DISTANCE * design.joints.screw_diameter
+    reach = SCREW_END_DISTANCE * design.joints.screw_diameter
     kept: set[Crossing] = set()
     for c in crossings:
         if c.kind == "AG":
@@ -152,13 +152,14 @@ def trimmed_curves(design: Design, curves: dict[CurveId, FramedCurve], crossings
     crown.
     """
     extents = _geodesic_extents(design, curves, crossings)
+    ridges = () if isinstance(design.shells, LevelShells) else (LEFT_RIDGE, RIGHT_RIDGE)
     trimmed = []
     for name in sorted(curves):
         curve = curves[name]
         if name.family == "G":
             start, end = extents[name]
         elif name.family == "E":
-            start, end = 0.0, curve.length if name.number == 1 else _crown_station(design, curve)
+            start, end = 0.0, _crown_station(design, curve) if name in ridges else curve.length
         else:
             joints = [_station_on(c, name) for c in _crossings_on(crossings, name)]
             start = joints[0] - _free_overhang(design, curve, name.family, joints[0], -1.0)

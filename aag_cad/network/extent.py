@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from aag_cad.design import Design
+from aag_cad.design import Design, LevelShells
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.geometry.revolution import AsymptoticChart
+from aag_cad.network.edges import bottom_coordinate, top_coordinate
 from aag_cad.network.model import CurveNetwork, Family
-from aag_cad.network.ridge import ridge_coordinate, surface_points
+from aag_cad.network.ridge import surface_points
 
 _SECTORS = 40
 
@@ -28,7 +29,10 @@ class ShellExtent:
 
 
 def plan_area(design: Design, chart: AsymptoticChart) -> float:
-    """Return the area in plan between the ground line and the ridge planes of one shell, mm2, by Gauss-Legendre."""
+    """Return the area in plan between the ground line and the top of one shell, mm2, by Gauss-Legendre.
+
+    Under a level top it is the area under the widest parallel circle but for the hole within the narrowest one.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(_SECTORS)
     half = design.half_sector
     # The ridge bends at the crown, so each half of the sector is integrated on its own; the shell is symmetric.
@@ -39,7 +43,11 @@ def plan_area(design: Design, chart: AsymptoticChart) -> float:
         x, y, _z = surface_points(chart, np.array([s]), np.array([theta]))[0]
         return float(np.hypot(x - axis, y))
 
-    outer = np.array([radius(ridge_coordinate(chart, float(t), design.shells.count, 0.0), float(t)) for t in angles])
+    if isinstance(design.shells, LevelShells):
+        ends = np.linspace(bottom_coordinate(design, chart), top_coordinate(design, chart, 0.0), 200)
+        radii = [radius(float(s), 0.0) for s in ends]
+        return float(half * (max(radii) ** 2 - min(radii) ** 2))
+    outer = np.array([radius(top_coordinate(design, chart, float(t)), float(t)) for t in angles])
     inner = radius(0.0, 0.0)
     return float(2.0 * half / 2.0 * (weights @ (outer**2 - inner**2)) / 2.0)
 
@@ -61,9 +69,8 @@ def shell_extent(design: Design, chart: AsymptoticChart, network: CurveNetwork) 
         weak = curvatures.geodesic if family in ("A1", "A2") else curvatures.normal
         radii[family] = min(radii.get(family, np.inf), float(1.0 / max(np.abs(weak).max(), 1e-12)))
         twists[family] = max(twists.get(family, 0.0), float(np.abs(curvatures.torsion).max()))
-    count, half = design.shells.count, design.half_sector
     heights = [
-        float(surface_points(chart, np.array([ridge_coordinate(chart, t, count, 0.0)]), np.array([t]))[0, 2])
-        for t in (0.0, half)
+        float(surface_points(chart, np.array([top_coordinate(design, chart, t)]), np.array([t]))[0, 2])
+        for t in (0.0, design.half_sector)
     ]
     return ShellExtent(plan_area(design, chart), heights[0], heights[1], radii, twists)

@@ -11,13 +11,19 @@ CrossingKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "ridge"]
 
 
 class CurveId(NamedTuple):
-    """Family and number (from 1) of a curve; E 1 is the bottom, E 2 and E 3 are the ridge planks.
+    """Family and number (from 1) of a curve; E 1 is the bottom, E 2 and E 3 are the ridge planks of a ridge.
 
+    On a level top E goes on from the bottom to the top, each with one plank, or with several where it is a closed ring.
     Numbers rise with theta: from left to right for someone who stands inside, at the centre of the vault.
     """
 
     family: Family
     number: int
+
+
+BOTTOM = CurveId("E", 1)
+LEFT_RIDGE = CurveId("E", 2)
+RIGHT_RIDGE = CurveId("E", 3)
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,8 @@ class NetworkCurve:
 class Crossing:
     """Where two curves are joined: the stations on each, the point and the surface normal there.
 
-    AA: A1 and A2; AG: A and G; boundary: A and E; foot: G and bottom; ridge: G and ridge plank, or two ridge planks.
+    AA: A1 and A2; AG: A and G; boundary: A and E; foot: G and bottom; ridge: G and top or
+    ridge plank, or two ridge planks.
     """
 
     kind: CrossingKind

@@ -21,8 +21,10 @@ def ridge_distance(points: Floats, shells: int) -> Floats:
     """Return the distance of points (n, 3) from the nearer ridge plane, mm, (n,); positive inside the shell.
 
     The shell looks from its axis along +x to the centre; its ridge planes are vertical through the centre, at
-    +-180/shells degrees from the direction -x.
+    +-180/shells degrees from the direction -x. A single shell has none: the distance is infinite.
     """
+    if shells == 1:
+        return np.full(len(points), np.inf)
     half = math.pi / shells
     return -math.sin(half) * points[:, 0] - math.cos(half) * np.abs(points[:, 1])
 

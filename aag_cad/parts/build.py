@@ -9,6 +9,7 @@ import numpy as np
 
 from aag_cad.design import Design
 from aag_cad.geometry.framed import FramedCurve, frames_at
+from aag_cad.geometry.patches import turn
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork
 from aag_cad.parts.joints import BuiltJoint, block_joint, end_joint, node_joint
 from aag_cad.parts.marks import Mark
@@ -45,7 +46,7 @@ def _numbered(network: CurveNetwork, shell: int) -> list[tuple[Mark, Crossing]]:
     def of(*kinds: str) -> list[Crossing]:
         return [c for c in network.crossings if c.kind in kinds]
 
-    nodes = sorted(of("AA"), key=lambda c: (round(c.point[2]), c.point[1]))
+    nodes = sorted(of("AA"), key=lambda c: (round(c.point[2]), round(c.point[1], 3), c.point[0]))
     blocks = sorted(of("AG", "boundary"), key=lambda c: (c.curves[0], c.stations[0]))
     marked = [(Mark(shell, "N", i), c) for i, c in enumerate(nodes, start=1)]
     marked += [(Mark(shell, "K", i), c) for i, c in enumerate(blocks, start=1)]
@@ -147,10 +148,8 @@ def _renamed(value: _T, old: str, new: str) -> _T:
 
 
 def _placement(index: int, count: int) -> Frame:
-    angle = 2.0 * math.pi * index / count
-    x = np.array([math.cos(angle), math.sin(angle), 0.0])
-    y = np.array([-math.sin(angle), math.cos(angle), 0.0])
-    return Frame((0.0, 0.0, 0.0), vector(x), vector(y), (0.0, 0.0, 1.0))
+    motion = turn(2.0 * math.pi * index / count)
+    return Frame((0.0, 0.0, 0.0), vector(motion[:3, 0]), vector(motion[:3, 1]), vector(motion[:3, 2]))
 
 
 def gridshell_from(design: Design, network: CurveNetwork) -> Gridshell:
@@ -174,6 +173,6 @@ def gridshell_from(design: Design, network: CurveNetwork) -> Gridshell:
             min_bending_radius=timber.min_bending_radius,
             max_twist=math.radians(timber.max_twist_deg_per_m) / 1000.0,
         ),
-        ground=-design.supports.foot_height,
+        ground=design.bottom_height - design.supports.foot_height,
         shells=tuple(shells),
     )
