@@ -39,10 +39,8 @@ class Finding:
     @property
     def text(self) -> str:
         """The finding in one line."""
-        return (
-            f"{self.mark}: {self.what} {self.found:.4g} {self.unit}, allowed {self.allowed:.4g} {self.unit}; "
-            f"{self.remedy}"
-        )
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{self.mark}: {self.what} {self.found:.4g}{unit}, allowed {self.allowed:.4g}{unit}; {self.remedy}"
 
 
 Check: TypeAlias = Callable[[Design, Gridshell], Iterator[Finding]]

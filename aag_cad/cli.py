@@ -1,6 +1,7 @@
 """The ``aag`` command; heavy imports happen inside the commands."""
 
 import json
+import math
 import os
 import sys
 import tomllib
@@ -16,7 +17,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from aag_cad import __version__
-from aag_cad.errors import AagError, FileError
+from aag_cad.errors import AagError, DesignError, FileError
 
 app = typer.Typer(
     add_completion=False,
@@ -91,13 +92,14 @@ def _findings_table(findings: list[dict[str, Any]]) -> Table:
     return table
 
 
-def _files_table(files: dict[str, int], folder: Path) -> Table:
+def _files_table(files: dict[str, int], folder: Path, summary: bool = True) -> Table:
     table = Table(title=f"Files in {folder}", title_justify="left")
     table.add_column("file")
     table.add_column("kB", justify="right")
     for name, size in files.items():
         table.add_row(name, f"{size / 1000:.0f}")
-    table.add_row("summary.json", "")
+    if summary:
+        table.add_row("summary.json", "")
     return table
 
 
@@ -192,6 +194,61 @@ def plan(design: DesignName, output: Folder = None, as_json: AsJson = False) -> 
         print(plan_json(built.plan), end="")
         return
     Console().print(_files_table(built.summary["files"], folder))
+
+
+def _goals_for_mesh(node_angle: float | None, bottom_row: int | None, height: float | None, symmetric: bool) -> Any:
+    from aag_cad.web.goals import Goals
+
+    if node_angle is not None and not 0.0 < node_angle < 180.0:
+        raise DesignError(f"--node-angle: {node_angle:g}; allowed between 0 and 180 degrees")
+    angle = None if node_angle is None else math.radians(180.0 - node_angle)
+    return Goals(angle=angle, bottom_row=bottom_row, height=height, symmetric=symmetric)
+
+
+@app.command()
+@_user_errors
+def optimise(
+    source: Annotated[
+        str, typer.Argument(metavar="DESIGN|MESH.obj", help="a design with a table [optimise], or a quad mesh")
+    ],
+    output: Folder = None,
+    node_angle: Annotated[
+        float | None, typer.Option(help="mesh: degrees between A lines, across the geodesics; 60 is the tri-hex")
+    ] = None,
+    bottom_row: Annotated[
+        int | None, typer.Option(help="mesh: row of the flat geodesic bottom, ghost rows under it")
+    ] = None,
+    height: Annotated[float | None, typer.Option(help="mesh: height of the top over the bottom, mm")] = None,
+    symmetric: Annotated[bool, typer.Option(help="mesh: keep it mirrored in the plane y = 0")] = True,
+    as_json: AsJson = False,
+) -> None:
+    """Optimise a web to planar stars, geodesics and a constant angle; exit code 1 if the goals are not reached."""
+    from aag_cad.pipeline import optimised_design, optimised_mesh, write_optimised
+
+    def progress(iteration: Any) -> None:
+        if not as_json:
+            energies = "  ".join(f"{name} {value:.1e}" for name, value in iteration.energies.items())
+            print(f"{iteration.number:3d} {iteration.stage:<6} {energies}", file=sys.stderr)
+
+    if source.lower().endswith(".obj"):
+        goals = _goals_for_mesh(node_angle, bottom_row, height, symmetric)
+        name, (found, goals) = Path(source).stem, (optimised_mesh(source, goals, progress), goals)
+    else:
+        from aag_cad.design import load_design
+
+        read = load_design(source)
+        name, (found, goals) = read.project.name, optimised_design(read, progress)
+    folder = output or Path(f"{name}-web")
+    files = write_optimised(found, goals, folder)
+    if as_json:
+        print(json.dumps({"reason": found.reason, "explanation": found.explanation, "files": files}, indent=1))
+    else:
+        console = Console()
+        console.print(f"{found.reason}: {found.explanation}", highlight=False)
+        console.print(_files_table(files, folder, summary=False))
+    if not found.success:
+        print(f"aag: {source}: {found.reason}: {found.explanation}", file=sys.stderr)
+        raise typer.Exit(1)
 
 
 @app.command()

@@ -11,22 +11,37 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from aag_cad.audit import Finding, audit
-from aag_cad.design import CatenoidSurface, CrpcSurface, Design, HyperboloidSurface, SplineSurface
+from aag_cad.design import Design
+from aag_cad.design_sections import (
+    ArcSurface,
+    CatenoidSurface,
+    CrpcSurface,
+    HyperboloidSurface,
+    Optimise,
+    SplineSurface,
+)
 from aag_cad.errors import DesignError, FileError
-from aag_cad.geometry.profiles import CrpcProfile, HyperboloidProfile, Profile, SplineProfile
+from aag_cad.geometry.profiles import ArcProfile, CrpcProfile, HyperboloidProfile, Profile, SplineProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
+from aag_cad.geometry.surface import Chart
 from aag_cad.network.build import shell_network
 from aag_cad.network.edges import bottom_coordinate, top_coordinate
 from aag_cad.network.extent import ShellExtent, shell_extent
 from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.model import Gridshell
+from aag_cad.web.goals import Goals, Iteration, Optimised
+from aag_cad.web.npz import web_npz
+from aag_cad.web.obj import read_web_obj, web_obj
+from aag_cad.web.optimise import optimise
 from aag_cad.web.quality import WebQuality, quality
+from aag_cad.web.start import StartWeb, start_web, web_chart
 from aag_cad.web.web import Web, crpc_web, sampled_web
 
 if TYPE_CHECKING:
     from assembly.plan import Plan
 
 Report = Callable[[str], None]
+IterationReport = Callable[[Iteration], None]
 
 
 @dataclass(frozen=True)
@@ -58,6 +73,8 @@ def profile_of(design: Design) -> Profile:
             return CrpcProfile(surface.neck_radius, 1.0)
         case HyperboloidSurface() as surface:
             return HyperboloidProfile(surface.neck_radius, surface.semi_axis)
+        case ArcSurface() as surface:
+            return ArcProfile(surface.neck_radius, surface.meridian_radius)
         case SplineSurface() as surface:
             return SplineProfile(surface.points)
 
@@ -83,11 +100,61 @@ def web_of(design: Design, chart: AsymptoticChart) -> Web:
     return sampled_web(chart, step * np.arange(-below, rows + 1, dtype=np.float64), np.asarray(theta, dtype=np.float64))
 
 
+def _started(design: Design, wish: Optimise) -> StartWeb:
+    chart = chart_of(design)
+    return start_web(design, wish, chart, top_coordinate(design, chart, 0.0))
+
+
+def optimised_design(design: Design, report: IterationReport = lambda iteration: None) -> tuple[Optimised, Goals]:
+    """Return the optimised web of a design and its goals; DesignError if the design has no table [optimise]."""
+    if design.optimise is None:
+        raise DesignError("optimise: the design has no table [optimise]; add one, or build the design as it is")
+    start = _started(design, design.optimise)
+    return optimise(start.web, start.goals, report), start.goals
+
+
+def optimised_mesh(path: str, goals: Goals, report: IterationReport = lambda iteration: None) -> Optimised:
+    """Return the optimised web of a quad mesh in an OBJ file; FileError if it cannot be read or is no grid."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path}: cannot be read as a text file: {error}") from error
+    return optimise(read_web_obj(text, path), goals, report)
+
+
+def worked_surface(design: Design) -> tuple[Chart, Web]:
+    """Return the surface that a design is built on and its web: as designed, or optimised if it asks for that.
+
+    DesignError with the optimiser's reason if the goals are not reached.
+    """
+    if design.optimise is None:
+        chart = chart_of(design)
+        return chart, web_of(design, chart)
+    start = _started(design, design.optimise)
+    found = optimise(start.web, start.goals)
+    if not found.success:
+        raise DesignError(
+            f"optimise: {found.reason}: {found.explanation}; change the goals, or look at `aag optimise` of this design"
+        )
+    return web_chart(start, found.web), found.web
+
+
+def write_optimised(found: Optimised, goals: Goals, folder: Path) -> dict[str, int]:
+    """Write web.obj, web.npz and the report optimise.html into a folder and return their sizes."""
+    from aag_cad.export.optimise_report import write_report
+    from aag_cad.files import write_bytes, write_text
+
+    write_text(folder / "web.obj", web_obj(found.web))
+    write_bytes(folder / "web.npz", web_npz(found.web))
+    write_report(found, goals, folder / "optimise.html")
+    return {name: (folder / name).stat().st_size for name in ("optimise.html", "web.npz", "web.obj")}
+
+
 def model_of(design: Design, report: Report = lambda stage: None) -> Model:
     """Return a design worked out to its gridshell; SurfaceError, NetworkError or DesignError where it cannot be."""
     report("web")
-    chart = chart_of(design)
-    measures = quality(web_of(design, chart))
+    chart, web = worked_surface(design)
+    measures = quality(web)
     report("curves")
     network = shell_network(design, chart)
     extent = shell_extent(design, chart, network)

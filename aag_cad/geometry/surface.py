@@ -28,6 +28,15 @@ class Surface(Protocol):
         ...
 
 
+class Chart(Surface, Protocol):
+    """A surface in the parameters (s, theta): A lines theta = c +- s, G lines theta = const, bottom curve s = 0."""
+
+    @property
+    def domain(self) -> tuple[float, float]:
+        """The range of s."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class Forms:
     """Coefficients of the first (E, F, G) and second (L, M, N) fundamental form; each (n,) float."""

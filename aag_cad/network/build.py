@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from aag_cad.design import Design, LevelShells
+from aag_cad.design import Design
+from aag_cad.design_sections import LevelShells
 from aag_cad.errors import NetworkError
 from aag_cad.geometry.framed import FramedCurve, framed_curve, nearest_station
-from aag_cad.geometry.revolution import AsymptoticChart
-from aag_cad.geometry.surface import unit_normals
+from aag_cad.geometry.surface import Chart, unit_normals
 from aag_cad.network.crop import kept_crossings, trimmed_curves
 from aag_cad.network.edges import EdgeLine, edge_at, level_edges, level_region, ridge_boundary
 from aag_cad.network.lines import ChartLine, Region, asymptotic_lines, crossings_of, geodesic_lines
@@ -32,7 +32,7 @@ class _Meeting:
     theta: float
 
 
-def _aa_meetings(design: Design, chart: AsymptoticChart, region: Region, lines: list[ChartLine]) -> list[_Meeting]:
+def _aa_meetings(design: Design, chart: Chart, region: Region, lines: list[ChartLine]) -> list[_Meeting]:
     """Return the AA nodes clear of bottom and top, without those of beams that have fewer than ``min_nodes``."""
     pattern = design.pattern
     found = [
@@ -71,7 +71,7 @@ def _boundary_meetings(region: Region, edges: tuple[EdgeLine, ...], lines: Itera
     return meetings
 
 
-def _beams(design: Design, chart: AsymptoticChart, region: Region) -> tuple[list[ChartLine], list[_Meeting]]:
+def _beams(design: Design, chart: Chart, region: Region) -> tuple[list[ChartLine], list[_Meeting]]:
     """Return the A lines that become beams, renumbered without gaps, and their nodes."""
     every = asymptotic_lines(region, design.step, design.pattern.row_offset)
     nodes = _aa_meetings(design, chart, region, every)
@@ -110,9 +110,7 @@ def _meetings(
     return meetings
 
 
-def _framed(
-    chart: AsymptoticChart, path: Callable[[Floats], tuple[Floats, Floats]], low: float, high: float
-) -> FramedCurve:
+def _framed(chart: Chart, path: Callable[[Floats], tuple[Floats, Floats]], low: float, high: float) -> FramedCurve:
     """Return the curve t -> (s, theta) on the chart over [low, high] as a framed curve."""
     rough = surface_points(chart, *path(np.linspace(low, high, 50)))
     length = float(np.linalg.norm(np.diff(rough, axis=0), axis=1).sum())
@@ -124,7 +122,7 @@ def _framed(
     return framed_curve(evaluate, low, high, length)
 
 
-def _line_curve(chart: AsymptoticChart, line: ChartLine) -> FramedCurve:
+def _line_curve(chart: Chart, line: ChartLine) -> FramedCurve:
     """Return an A or G line as a framed curve that reaches past both its ends."""
     ends = np.array([line.low, line.high])
     jet = chart.jet(ends, line.theta(ends))
@@ -132,7 +130,7 @@ def _line_curve(chart: AsymptoticChart, line: ChartLine) -> FramedCurve:
     return _framed(chart, lambda s: (s, line.theta(s)), line.low - before, line.high + after)
 
 
-def _crossings(chart: AsymptoticChart, curves: dict[CurveId, FramedCurve], meetings: list[_Meeting]) -> list[Crossing]:
+def _crossings(chart: Chart, curves: dict[CurveId, FramedCurve], meetings: list[_Meeting]) -> list[Crossing]:
     """Return the meetings as crossings with their arc-length stations on both curves."""
     jet = chart.jet(np.array([m.s for m in meetings]), np.array([m.theta for m in meetings]))
     normals = unit_normals(jet)
@@ -149,7 +147,7 @@ def _crossings(chart: AsymptoticChart, curves: dict[CurveId, FramedCurve], meeti
     ]
 
 
-def shell_network(design: Design, chart: AsymptoticChart) -> CurveNetwork:
+def shell_network(design: Design, chart: Chart) -> CurveNetwork:
     """Return the curve network of one shell of a design (paper section 2.2, Fig. 2, 6b and c).
 
     Tri-hex selection of A and G lines, crop at the bottom, the side meridians and the top, joints, ends. SurfaceError

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 import numpy as np
 from scipy.optimize import brentq
 
-from aag_cad.design import Design, LevelShells
+from aag_cad.design import Design
+from aag_cad.design_sections import LevelShells
 from aag_cad.errors import NetworkError
 from aag_cad.geometry.framed import FramedCurve, frames_at
 from aag_cad.network.model import LEFT_RIDGE, RIGHT_RIDGE, Crossing, CurveId, NetworkCurve

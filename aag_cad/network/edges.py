@@ -8,9 +8,10 @@ from typing import Literal
 import numpy as np
 from scipy.optimize import brentq
 
-from aag_cad.design import Design, LevelShells
+from aag_cad.design import Design
+from aag_cad.design_sections import LevelShells
 from aag_cad.errors import NetworkError
-from aag_cad.geometry.revolution import AsymptoticChart
+from aag_cad.geometry.surface import Chart
 from aag_cad.network.crop import SCREW_END_DISTANCE
 from aag_cad.network.lines import ChartLine, Region
 from aag_cad.network.model import BOTTOM, LEFT_RIDGE, RIGHT_RIDGE, CurveId
@@ -32,7 +33,7 @@ class EdgeLine:
     upto: float = math.inf
 
 
-def coordinate_at_height(chart: AsymptoticChart, height: float, key: str) -> float:
+def coordinate_at_height(chart: Chart, height: float, key: str) -> float:
     """Return s where the meridian reaches a height over the ground line, mm; NetworkError with the key if never."""
     if height == 0.0:
         return 0.0
@@ -49,12 +50,12 @@ def coordinate_at_height(chart: AsymptoticChart, height: float, key: str) -> flo
     return float(brentq(gap, low, high, xtol=1e-13))
 
 
-def bottom_coordinate(design: Design, chart: AsymptoticChart) -> float:
+def bottom_coordinate(design: Design, chart: Chart) -> float:
     """Return s of the bottom edge."""
     return coordinate_at_height(chart, design.bottom_height, "shells.bottom_height")
 
 
-def top_coordinate(design: Design, chart: AsymptoticChart, theta: float) -> float:
+def top_coordinate(design: Design, chart: Chart, theta: float) -> float:
     """Return s where the surface ends at an angle: at the ridge or mirror plane, or at the stated height."""
     if isinstance(design.shells, LevelShells):
         return coordinate_at_height(chart, design.shells.top_height, "shells.top_height")
@@ -65,7 +66,7 @@ def _parallel(s: float) -> Callable[[Floats], tuple[Floats, Floats]]:
     return lambda theta: (np.full_like(theta, s), theta)
 
 
-def _sides(design: Design, chart: AsymptoticChart, s: Iterable[float]) -> list[float]:
+def _sides(design: Design, chart: Chart, s: Iterable[float]) -> list[float]:
     """Return the angle up to which an open edge reaches past the side at each s."""
     half = design.half_sector
     listed = np.array(list(s))
@@ -73,7 +74,7 @@ def _sides(design: Design, chart: AsymptoticChart, s: Iterable[float]) -> list[f
     return [float(side) for side in half + design.boundary.end_overhang / radii]
 
 
-def ridge_boundary(design: Design, chart: AsymptoticChart) -> tuple[Region, tuple[EdgeLine, ...]]:
+def ridge_boundary(design: Design, chart: Chart) -> tuple[Region, tuple[EdgeLine, ...]]:
     """Return region and edges of a shell that ends at ridge planes: bottom, and two ridge geodesics."""
     shells, setback = design.shells.count, design.boundary.ridge_setback
     top = ridge_coordinate(chart, design.half_sector, shells, setback)
@@ -87,7 +88,7 @@ def ridge_boundary(design: Design, chart: AsymptoticChart) -> tuple[Region, tupl
     return Region(design.half_sector, lambda theta: float(ridge.height(theta))), edges
 
 
-def level_region(design: Design, chart: AsymptoticChart) -> Region:
+def level_region(design: Design, chart: Chart) -> Region:
     """Return the region of a shell cropped at two heights; NetworkError if its top edge reaches its neighbour's."""
     bottom, top = bottom_coordinate(design, chart), top_coordinate(design, chart, 0.0)
     half, setback = design.half_sector, design.boundary.ridge_setback
@@ -131,9 +132,7 @@ def _ring_cuts(
     )
 
 
-def level_edges(
-    design: Design, chart: AsymptoticChart, region: Region, lines: Iterable[ChartLine]
-) -> tuple[EdgeLine, ...]:
+def level_edges(design: Design, chart: Chart, region: Region, lines: Iterable[ChartLine]) -> tuple[EdgeLine, ...]:
     """Return the edges of a shell cropped at two heights: parallel circles, cut into several planks where closed."""
     heights: tuple[tuple[Literal["bottom", "top"], float, str], ...] = (
         ("bottom", region.bottom, "pattern.row_offset"),

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from aag_cad.design import Design, LevelShells
+from aag_cad.design import Design
 from aag_cad.geometry.framed import curvatures_at
-from aag_cad.geometry.revolution import AsymptoticChart
+from aag_cad.geometry.surface import Chart
 from aag_cad.network.edges import bottom_coordinate, top_coordinate
 from aag_cad.network.model import CurveNetwork, Family
 from aag_cad.network.ridge import surface_points
@@ -28,31 +28,25 @@ class ShellExtent:
     largest_twist: dict[Family, float]
 
 
-def plan_area(design: Design, chart: AsymptoticChart) -> float:
+def plan_area(design: Design, chart: Chart) -> float:
     """Return the area in plan between the ground line and the top of one shell, mm2, by Gauss-Legendre.
 
-    Under a level top it is the area under the widest parallel circle but for the hole within the narrowest one.
+    It is the integral of |(X_s x X_theta)_z|; where a shell leans out and in again, both parts count.
     """
     nodes, weights = np.polynomial.legendre.leggauss(_SECTORS)
     half = design.half_sector
     # The ridge bends at the crown, so each half of the sector is integrated on its own; the shell is symmetric.
     angles = half / 2.0 * (nodes + 1.0)
-    axis = chart.surface.axis_x
-
-    def radius(s: float, theta: float) -> float:
-        x, y, _z = surface_points(chart, np.array([s]), np.array([theta]))[0]
-        return float(np.hypot(x - axis, y))
-
-    if isinstance(design.shells, LevelShells):
-        ends = np.linspace(bottom_coordinate(design, chart), top_coordinate(design, chart, 0.0), 200)
-        radii = [radius(float(s), 0.0) for s in ends]
-        return float(half * (max(radii) ** 2 - min(radii) ** 2))
-    outer = np.array([radius(top_coordinate(design, chart, float(t)), float(t)) for t in angles])
-    inner = radius(0.0, 0.0)
-    return float(2.0 * half / 2.0 * (weights @ (outer**2 - inner**2)) / 2.0)
+    bottom = bottom_coordinate(design, chart)
+    total = 0.0
+    for theta, weight in zip(angles, weights, strict=True):
+        reach = (top_coordinate(design, chart, float(theta)) - bottom) / 2.0
+        jet = chart.jet(bottom + reach * (nodes + 1.0), np.full_like(nodes, theta))
+        total += weight * reach * float(weights @ np.abs(np.cross(jet.du, jet.dv)[:, 2]))
+    return half * total
 
 
-def shell_extent(design: Design, chart: AsymptoticChart, network: CurveNetwork) -> ShellExtent:
+def shell_extent(design: Design, chart: Chart, network: CurveNetwork) -> ShellExtent:
     """Return the figures of a shell; curves are measured between their outermost joints, ends not counted."""
     radii: dict[Family, float] = {}
     twists: dict[Family, float] = {}

@@ -10,8 +10,7 @@ from scipy.optimize import brentq
 
 from aag_cad.errors import NetworkError
 from aag_cad.geometry.geodesic import geodesic_between
-from aag_cad.geometry.revolution import AsymptoticChart
-from aag_cad.geometry.surface import Surface
+from aag_cad.geometry.surface import Chart, Surface
 from aag_cad.units import Floats
 
 _SETBACK_TOLERANCE = 0.05
@@ -34,7 +33,7 @@ def surface_points(chart: Surface, s: Floats, theta: Floats) -> Floats:
     return chart.jet(s, theta).point
 
 
-def ridge_coordinate(chart: AsymptoticChart, theta: float, shells: int, distance: float) -> float:
+def ridge_coordinate(chart: Chart, theta: float, shells: int, distance: float) -> float:
     """Return s where the meridian theta comes within ``distance`` mm of the ridge plane; NetworkError if never."""
     low, high = 0.0, chart.domain[1]
 
@@ -71,7 +70,7 @@ class RidgeLine:
     height: BSpline
 
 
-def ridge_line(chart: AsymptoticChart, shells: int, side: float, setback: float) -> RidgeLine:
+def ridge_line(chart: Chart, shells: int, side: float, setback: float) -> RidgeLine:
     """Return the geodesic from theta = side to the crown (theta = 0) that keeps ``setback`` mm to the ridge plane.
 
     Both ends keep the same distance; the geodesic between them bends towards the plane, so they start further away.

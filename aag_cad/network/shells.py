@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from aag_cad.design import Design, LevelShells, MirrorShells
+from aag_cad.design import Design
+from aag_cad.design_sections import LevelShells, MirrorShells
 from aag_cad.geometry.patches import Patch, cropped, cropped_by_plane, flipped, intersected, polar_array
 from aag_cad.geometry.profiles import SplineProfile
 from aag_cad.geometry.revolution import AsymptoticChart
