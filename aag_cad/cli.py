@@ -122,7 +122,13 @@ def build(
     design: DesignName,
     output: Folder = None,
     only: Annotated[
-        str, typer.Option(help="comma-separated: gridshell,step,ifc,glb,tables,plan,sequence,overview")
+        str,
+        typer.Option(
+            help="comma-separated: gridshell,step,ifc,glb,tables,plan,sequence,overview; and web,curves,rhino if named"
+        ),
+    ] = "",
+    curves: Annotated[
+        str, typer.Option(metavar="FILE", help="polylines (JSON) of another program in place of the design's curves")
     ] = "",
     as_json: AsJson = False,
 ) -> None:
@@ -130,14 +136,14 @@ def build(
     from aag_cad.design import load_design
 
     read = load_design(design)
-    from aag_cad.pipeline import MODEL_STAGES, chosen_outputs
+    from aag_cad.pipeline import MODEL_STAGES, chosen_outputs, curves_from
     from aag_cad.pipeline import build as run
 
     wanted = [name.strip() for name in only.split(",") if name.strip()]
     stages = len(MODEL_STAGES) + len(chosen_outputs(wanted))
     folder = output or Path(read.project.name)
     with _progress(stages, as_json) as report:
-        summary = run(read, folder, wanted, report).summary
+        summary = run(read, folder, wanted, report, curves_from(curves) if curves else None).summary
     if as_json:
         print(json.dumps(summary, indent=1, ensure_ascii=False))
         return

@@ -27,9 +27,12 @@ from aag_cad.geometry.surface import Chart
 from aag_cad.network.build import shell_network
 from aag_cad.network.edges import bottom_coordinate, top_coordinate
 from aag_cad.network.extent import ShellExtent, shell_extent
+from aag_cad.network.model import CurveNetwork
+from aag_cad.network.polylines import polylines_json, read_polylines
 from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.model import Gridshell
 from aag_cad.web.goals import Goals, Iteration, Optimised
+from aag_cad.web.interpolation import interpolated_surface
 from aag_cad.web.npz import web_npz
 from aag_cad.web.obj import read_web_obj, web_obj
 from aag_cad.web.optimise import optimise
@@ -46,10 +49,12 @@ IterationReport = Callable[[Iteration], None]
 
 @dataclass(frozen=True)
 class Model:
-    """A design worked out: the measures of its web and of its curves, and the gridshell."""
+    """A design worked out: its web with its measures, its curves with theirs, and the gridshell."""
 
     design: Design
+    net: Web
     web: WebQuality
+    network: CurveNetwork
     extent: ShellExtent
     gridshell: Gridshell
 
@@ -150,16 +155,28 @@ def write_optimised(found: Optimised, goals: Goals, folder: Path) -> dict[str, i
     return {name: (folder / name).stat().st_size for name in ("optimise.html", "web.npz", "web.obj")}
 
 
-def model_of(design: Design, report: Report = lambda stage: None) -> Model:
-    """Return a design worked out to its gridshell; SurfaceError, NetworkError or DesignError where it cannot be."""
+def curves_from(path: str) -> CurveNetwork:
+    """Return the curve network in a JSON file of polylines; FileError or NetworkError where it does not fit."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path}: cannot be read as a text file: {error}") from error
+    return read_polylines(text, path)
+
+
+def model_of(design: Design, report: Report = lambda stage: None, given_curves: CurveNetwork | None = None) -> Model:
+    """Return a design worked out to its gridshell, on its own curves or on given ones.
+
+    SurfaceError, NetworkError or DesignError where it cannot be built.
+    """
     report("web")
     chart, web = worked_surface(design)
     measures = quality(web)
     report("curves")
-    network = shell_network(design, chart)
+    network = given_curves or shell_network(design, chart)
     extent = shell_extent(design, chart, network)
     report("parts")
-    return Model(design, measures, extent, gridshell_from(design, network))
+    return Model(design, web, measures, network, extent, gridshell_from(design, network))
 
 
 def gridshell_of(design: Design) -> Gridshell:
@@ -219,6 +236,28 @@ def _write_overview(model: Model, _plan: "Plan", folder: Path) -> None:
     write_overview(model.gridshell, folder / "overview.svg", folder / "overview.png")
 
 
+def _write_web(model: Model, _plan: "Plan", folder: Path) -> None:
+    from aag_cad.files import write_bytes, write_text
+
+    write_text(folder / "web.obj", web_obj(model.net))
+    write_bytes(folder / "web.npz", web_npz(model.net))
+
+
+def _write_curves(model: Model, _plan: "Plan", folder: Path) -> None:
+    from aag_cad.export.step_curves import write_step_curves
+    from aag_cad.files import write_text
+
+    surface = interpolated_surface(model.net, model.design.step)
+    write_step_curves(model.network, surface, folder / "curves.step")
+    write_text(folder / "curves.json", polylines_json(model.network))
+
+
+def _write_rhino(model: Model, _plan: "Plan", folder: Path) -> None:
+    from aag_cad.export.rhino import write_3dm
+
+    write_3dm(model.gridshell, folder / f"{model.gridshell.name}.3dm")
+
+
 OUTPUTS: dict[str, Callable[[Model, "Plan", Path], None]] = {
     "gridshell": _write_gridshell,
     "step": _write_step,
@@ -229,16 +268,22 @@ OUTPUTS: dict[str, Callable[[Model, "Plan", Path], None]] = {
     "sequence": _write_sequence,
     "overview": _write_overview,
 }
+# Written only if named: for designers who go on in other programs.
+EXTRA_OUTPUTS: dict[str, Callable[[Model, "Plan", Path], None]] = {
+    "web": _write_web,
+    "curves": _write_curves,
+    "rhino": _write_rhino,
+}
 MODEL_STAGES = ("web", "curves", "parts", "audit", "assembly")
 
 
 def chosen_outputs(only: Iterable[str]) -> tuple[str, ...]:
-    """Return the outputs to write, all if none is named; DesignError naming what is not an output."""
-    wanted = list(only)
-    unknown = sorted(set(wanted) - set(OUTPUTS))
+    """Return the outputs to write, all but the extra ones if none is named; DesignError on an unknown name."""
+    wanted, every = list(only), OUTPUTS | EXTRA_OUTPUTS
+    unknown = sorted(set(wanted) - set(every))
     if unknown:
-        raise DesignError(f"--only: no output called {', '.join(unknown)}; there are {', '.join(OUTPUTS)}")
-    return tuple(name for name in OUTPUTS if not wanted or name in wanted)
+        raise DesignError(f"--only: no output called {', '.join(unknown)}; there are {', '.join(every)}")
+    return tuple(name for name in every if (name in wanted if wanted else name in OUTPUTS))
 
 
 def _staging(folder: Path) -> "tempfile.TemporaryDirectory[str]":
@@ -266,7 +311,13 @@ def _publish(staging: Path, folder: Path) -> None:
             raise FileError(f"{target}: cannot be written: {error.strerror}") from error
 
 
-def build(design: Design, folder: Path, only: Iterable[str] = (), report: Report = lambda stage: None) -> Build:
+def build(
+    design: Design,
+    folder: Path,
+    only: Iterable[str] = (),
+    report: Report = lambda stage: None,
+    given_curves: CurveNetwork | None = None,
+) -> Build:
     """Build a design into a folder and return what was built.
 
     Every file is written into a temporary folder first and moved when all are whole, so that an error leaves nothing
@@ -282,7 +333,7 @@ def build(design: Design, folder: Path, only: Iterable[str] = (), report: Report
         begun.append((stage, time.perf_counter()))
         report(stage)
 
-    model = model_of(design, begin)
+    model = model_of(design, begin, given_curves)
     with _staging(folder) as name:
         staging = Path(name)
         begin("audit")
@@ -291,7 +342,7 @@ def build(design: Design, folder: Path, only: Iterable[str] = (), report: Report
         plan = plan_of(model.gridshell, design.crew.people, design.crew.lift_limit)
         for output in outputs:
             begin(output)
-            OUTPUTS[output](model, plan, staging)
+            (OUTPUTS | EXTRA_OUTPUTS)[output](model, plan, staging)
         ends = [start for _, start in begun[1:]] + [time.perf_counter()]
         seconds = {stage: end - start for (stage, start), end in zip(begun, ends, strict=True)}
         sizes = {path: (staging / path).stat().st_size for path in _files_below(staging)}

@@ -107,3 +107,24 @@ def test_the_files_of_an_optimised_web_are_the_same_bytes_twice(tmp_path: Path) 
     write_optimised(optimise(web, goals), goals, tmp_path / "b")
     for name in ("web.obj", "web.npz", "optimise.html"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_curves_go_out_to_other_programs_and_come_back_as_the_same_planks(tmp_path: Path) -> None:
+    out = _aag("build", "vault", "-o", "a", "--only", "curves,web,rhino,tables", "--json", cwd=tmp_path)
+    assert out.returncode == 0, out.stderr
+    names = {path.name for path in (tmp_path / "a").iterdir()}
+    assert {"curves.json", "curves.step", "web.obj", "web.npz", "vault.3dm"} <= names
+    back = _aag("build", "vault", "-o", "b", "--only", "tables", "--curves", "a/curves.json", "--json", cwd=tmp_path)
+    assert back.returncode == 0, back.stderr
+    assert json.loads(back.stdout)["counts"] == json.loads(out.stdout)["counts"]
+    holes = [(tmp_path / folder / "tables" / "holes.csv").read_text().splitlines() for folder in ("a", "b")]
+    stations = [np.array([float(line.split(",")[2]) for line in lines[1:]]) for lines in holes]
+    # Printed to 0.1 mm: the last digit may turn over.
+    np.testing.assert_allclose(stations[0], stations[1], atol=0.11)
+
+
+def test_curves_that_cannot_be_read_are_refused(tmp_path: Path) -> None:
+    run = _aag("build", "vault", "-o", "a", "--curves", "none.json", cwd=tmp_path)
+    assert run.returncode == 2
+    assert "none.json: cannot be read" in run.stderr
+    assert not (tmp_path / "a").exists()
