@@ -3,7 +3,7 @@
 import math
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from pydantic import ValidationError, model_validator
@@ -33,6 +33,10 @@ _LEAST_FLATS = math.cos(math.radians(30.0))
 _KINDS = {"surface": ("profile", "crpc, catenoid, hyperboloid, arc, spline"), "shells": ("top", "ridge, mirror, level")}
 
 
+# What must hold, and what to say where it does not.
+Rules: TypeAlias = tuple[tuple[bool, str], ...]
+
+
 class Design(Section):
     """One design file."""
 
@@ -51,9 +55,15 @@ class Design(Section):
 
     @model_validator(mode="after")
     def _fits_together(self) -> "Design":
+        rules = (*self._level_rules(), *self._shell_rules(), *self._joint_rules(), *self._boundary_rules())
+        broken = [text for holds, text in rules if not holds]
+        if broken:
+            raise ValueError("\n".join(broken))
+        return self
+
+    def _shell_rules(self) -> Rules:
         limit = 180.0 - 360.0 / self.shells.count
-        rules = (
-            *self._level_rules(),
+        return (
             (
                 self.optimise is None or self.shells.top == "ridge",
                 f"optimise: only shells with shells.top = 'ridge' are optimised, not {self.shells.top!r}; leave the "
@@ -64,6 +74,16 @@ class Design(Section):
                 f"shells.sector_deg: {self.shells.sector_deg:g} is too wide for {self.shells.count} shells; "
                 f"at most {limit:g}, or neighbouring shells rise again beyond the entry: narrow the sector",
             ),
+            (
+                self.ground_spacing > self.timber.width,
+                f"pattern.geodesics: {self.pattern.geodesics} planks of {self.timber.width:g} mm stand "
+                f"{self.ground_spacing:.0f} mm apart on the ground line and overlap; use fewer geodesics or a wider "
+                "shells.sector_deg",
+            ),
+        )
+
+    def _joint_rules(self) -> Rules:
+        return (
             (
                 self.timber.thickness < self.joints.gap,
                 f"timber.thickness: {self.timber.thickness:g} mm is not thinner than joints.gap "
@@ -115,12 +135,10 @@ class Design(Section):
                 f"joints.block_length: {self.joints.block_length:g} mm leaves the bolt less than 4 d to the block's "
                 f"ends (EN 1995-1-1, table 8.4); at least {8.0 * self.joints.bolt_diameter:g}",
             ),
-            (
-                self.ground_spacing > self.timber.width,
-                f"pattern.geodesics: {self.pattern.geodesics} planks of {self.timber.width:g} mm stand "
-                f"{self.ground_spacing:.0f} mm apart on the ground line and overlap; use fewer geodesics or a wider "
-                "shells.sector_deg",
-            ),
+        )
+
+    def _boundary_rules(self) -> Rules:
+        return (
             (
                 self.boundary.end_overhang <= self.boundary.max_overhang,
                 f"boundary.end_overhang: {self.boundary.end_overhang:g} mm is more than boundary.max_overhang "
@@ -132,12 +150,8 @@ class Design(Section):
                 f"and boundary.ridge_gap; at least {self.timber.width / 2 + self.boundary.ridge_gap:g}",
             ),
         )
-        broken = [text for holds, text in rules if not holds]
-        if broken:
-            raise ValueError("\n".join(broken))
-        return self
 
-    def _level_rules(self) -> tuple[tuple[bool, str], ...]:
+    def _level_rules(self) -> Rules:
         shells = self.shells
         if not isinstance(shells, LevelShells):
             return ()
