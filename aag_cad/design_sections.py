@@ -233,6 +233,10 @@ class Optimise(Section):
         60.0, description="between the A lines, across the geodesics; 60 is the equilateral tri-hex"
     )
     crown_height: Positive | None = Field(None, description="mm from the ground line to the crown, over the centre")
+    method: Literal["gauss-newton", "levenberg-marquardt"] = "gauss-newton"
+    weights: dict[Literal["A-net", "geodesic", "angle", "bottom", "points", "radius", "twist"], Positive] = Field(
+        default_factory=dict, description="of the energies, in place of those of the paper's Eq. (7): 1, but bottom 10"
+    )
     cells: Annotated[Count, Field(ge=2, le=16, multiple_of=2)] = 2
     closeness: NotNegative = 0.0
     min_radius: Positive | None = None

@@ -33,9 +33,10 @@ from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.model import Gridshell
 from aag_cad.web.goals import Goals, Iteration, Optimised
 from aag_cad.web.interpolation import interpolated_surface
+from aag_cad.web.normal_equations import best_factorisation
 from aag_cad.web.npz import web_npz
 from aag_cad.web.obj import read_web_obj, web_obj
-from aag_cad.web.optimise import optimise
+from aag_cad.web.optimise import Method, optimise
 from aag_cad.web.quality import WebQuality, quality
 from aag_cad.web.start import StartWeb, start_web, web_chart
 from aag_cad.web.web import Web, crpc_web, sampled_web
@@ -110,12 +111,16 @@ def _started(design: Design, wish: Optimise) -> StartWeb:
     return start_web(design, wish, chart, top_coordinate(design, chart, 0.0))
 
 
+def _method(wish: Optimise) -> Method:
+    return Method(wish.method == "levenberg-marquardt", best_factorisation())
+
+
 def optimised_design(design: Design, report: IterationReport = lambda iteration: None) -> tuple[Optimised, Goals]:
     """Return the optimised web of a design and its goals; DesignError if the design has no table [optimise]."""
     if design.optimise is None:
         raise DesignError("optimise: the design has no table [optimise]; add one, or build the design as it is")
     start = _started(design, design.optimise)
-    return optimise(start.web, start.goals, report), start.goals
+    return optimise(start.web, start.goals, report, _method(design.optimise)), start.goals
 
 
 def optimised_mesh(path: str, goals: Goals, report: IterationReport = lambda iteration: None) -> Optimised:
@@ -136,7 +141,7 @@ def worked_surface(design: Design) -> tuple[Chart, Web]:
         chart = chart_of(design)
         return chart, web_of(design, chart)
     start = _started(design, design.optimise)
-    found = optimise(start.web, start.goals)
+    found = optimise(start.web, start.goals, method=_method(design.optimise))
     if not found.success:
         raise DesignError(
             f"optimise: {found.reason}: {found.explanation}; change the goals, or look at `aag optimise` of this design"

@@ -27,7 +27,8 @@ class Goals:
     geodesics); ``bottom_row`` is the row of the planar, geodesic bottom curve, with ghost rows under it; ``height`` and
     ``span`` (mm) hold the top of the middle column over the bottom and the width of the bottom row; ``points`` are
     held where they are said; ``closeness`` weighs the distance from the start; ``min_radius`` (mm) and ``max_twist``
-    (rad/mm) are one-sided; ``symmetric`` mirrors the web in the plane y = 0.
+    (rad/mm) are one-sided; ``symmetric`` mirrors the web in the plane y = 0. ``weights`` replaces those of Eq. (7)
+    by the name of an energy: A-net, geodesic, angle, bottom, height, span, points, radius, twist.
     """
 
     angle: float | None
@@ -39,6 +40,7 @@ class Goals:
     min_radius: float | None = None
     max_twist: float | None = None
     symmetric: bool = True
+    weights: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -101,7 +101,7 @@ def _terms(web: Web, start: Floats, goals: Goals, row: int) -> dict[str, Term]:
     if goals.angle is not None:
         terms["angle"] = constant_angle(web, goals.angle)
     if goals.bottom_row is not None:
-        terms["bottom"] = _weighted(bottom_curve(web, row), BOTTOM_WEIGHT)
+        terms["bottom"] = bottom_curve(web, row)
     if goals.height is not None:
         terms["height"] = height(web, row, goals.height)
     if goals.span is not None:
@@ -114,7 +114,8 @@ def _terms(web: Web, start: Floats, goals: Goals, row: int) -> dict[str, Term]:
         terms["radius"] = bending_radius(web, goals.min_radius)
     if goals.max_twist is not None:
         terms["twist"] = twist(web, goals.max_twist)
-    return terms
+    weights = {"bottom": BOTTOM_WEIGHT, **goals.weights}
+    return {name: _weighted(item, weights[name]) if name in weights else item for name, item in terms.items()}
 
 
 def _linearised(stage: _Stage, vertices: Floats, weight: float, method: Method) -> tuple[Term, dict[str, float]]:

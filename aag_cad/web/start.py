@@ -74,6 +74,7 @@ def start_web(design: Design, wish: Optimise, chart: AsymptoticChart, crown: flo
         points=points,
         closeness=wish.closeness,
         min_radius=wish.min_radius,
+        weights={str(name): weight for name, weight in wish.weights.items()},
         max_twist=None if wish.max_twist_deg_per_m is None else math.radians(wish.max_twist_deg_per_m) / 1000.0,
     )
     return StartWeb(web, goals, cell, -margin * cell, first_theta)

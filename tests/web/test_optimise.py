@@ -1,6 +1,7 @@
 """The optimiser: from rotational surfaces that are not CRPC to AAG webs of a constant angle, and how it fails."""
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -114,6 +115,15 @@ def test_fairness_on_positions_flattens_the_web_and_is_caught() -> None:
     assert not found.success
     assert found.reason in ("collapsed", "left the design's range")
     assert optimise(web, free).success, "on displacements the same start converges"
+
+
+def test_weights_replace_those_of_the_paper_by_name() -> None:
+    web = start_web(circular_arc(), 1)
+    first = optimise(web, goals_for(web)).iterations[0].energies
+    heavier = optimise(web, replace(goals_for(web), weights={"angle": 4.0, "bottom": 1.0})).iterations[0].energies
+    assert heavier["angle"] == pytest.approx(4.0 * first["angle"])
+    assert heavier["bottom"] == pytest.approx(first["bottom"] / 10.0), "Eq. (7) weighs the bottom curve by 10"
+    assert heavier["A-net"] == first["A-net"]
 
 
 def test_levenberg_marquardt_reaches_the_same_goals() -> None:
