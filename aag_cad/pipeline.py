@@ -150,12 +150,13 @@ def worked_surface(design: Design) -> tuple[Chart, Web]:
 
 
 def write_optimised(found: Optimised, goals: Goals, folder: Path) -> dict[str, int]:
-    """Write web.obj, web.npz and the report optimise.html into a folder and return their sizes."""
+    """Write web.obj and web.npz without the ghost rows, and the report, into a folder; return the files' sizes."""
     from aag_cad.export.optimise_report import write_report
     from aag_cad.files import write_bytes, write_text
 
-    write_text(folder / "web.obj", web_obj(found.web))
-    write_bytes(folder / "web.npz", web_npz(found.web))
+    web = Web(found.web.vertices[goals.bottom_row or 0 :])
+    write_text(folder / "web.obj", web_obj(web))
+    write_bytes(folder / "web.npz", web_npz(web))
     write_report(found, goals, folder / "optimise.html")
     return {name: (folder / name).stat().st_size for name in ("optimise.html", "web.npz", "web.obj")}
 

@@ -79,6 +79,8 @@ def test_a_mesh_from_another_program_is_optimised_and_written_back(tmp_path: Pat
     assert json.loads(run.stdout)["reason"] == "converged"
     found = read_web_obj((tmp_path / "mesh-web" / "web.obj").read_text(encoding="utf-8"), "web.obj")
     assert quality(found).planarity_per_edge < 1e-7
+    assert found.vertices.shape == (20, 21, 3), "the ghost row under the bottom curve is removed"
+    assert np.abs(found.vertices[0, :, 2]).max() < 1e-4
     assert (tmp_path / "mesh-web" / "optimise.html").read_text(encoding="utf-8").count("<svg") >= 5
 
 
