@@ -88,8 +88,8 @@ def _jointed(design: Design, plank: Plank, joints: list[Joint], beam: Beam | Non
     points = [(joint.mark, np.array(joint.point)) for joint in joints]
     if beam is not None:
         shift = design.sibling_offset * (1.0 if plank.mark == beam.planks[0] else -1.0)
-        lifted = {mark: point for (mark, _), point in zip(points, _on_beam(design, beam, joints), strict=True)}
-        points = [(mark, lifted[mark][0] + shift * lifted[mark][1]) for mark, _ in points]
+        places = zip(joints, _on_beam(design, beam, joints), strict=True)
+        points = [(joint.mark, point + shift * across) for joint, (point, across) in places]
     return replace(plank, joints=with_joints(plank, points))
 
 

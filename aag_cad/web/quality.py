@@ -88,7 +88,10 @@ def quality(web: Web) -> WebQuality:
     first = unit(unit(arms[0]) - unit(arms[2]))
     second = unit(unit(arms[1]) - unit(arms[3]))
     meridian = tangential(unit(up) - unit(down))
-    twist = _angle(normal[1:, 1:], normal[:-1, :-1]) / np.linalg.norm(arms[0][:-1, :-1], axis=-1)
+    twists = (
+        _angle(normal[1:, 1:], normal[:-1, :-1]) / np.linalg.norm(arms[0][:-1, :-1], axis=-1),
+        _angle(normal[1:, :-1], normal[:-1, 1:]) / np.linalg.norm(arms[1][:-1, 1:], axis=-1),
+    )
     checker = np.diff(np.diff(v, 2, axis=0), 2, axis=1) / 16.0
     return WebQuality(
         vertices=v.shape[0] * v.shape[1],
@@ -101,5 +104,5 @@ def quality(web: Web) -> WebQuality:
         normal_turning_deg=float(np.degrees(_angle(normal[1:], normal[:-1]).sum(axis=0).max())),
         smallest_radius_a=float(min(_radius(arms[0], arms[2]).min(), _radius(arms[1], arms[3]).min())),
         smallest_radius_g=float(_radius(up, down).min()),
-        largest_twist_deg_per_m=float(np.degrees(twist.max()) * MM_PER_M),
+        largest_twist_deg_per_m=float(np.degrees(max(twist.max() for twist in twists)) * MM_PER_M),
     )

@@ -5,10 +5,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from differences import central_differences, perturbed
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aag_cad.units import Floats
 from aag_cad.web.goals import PointGoal
 from aag_cad.web.quality import quality
 from aag_cad.web.targets import bending_radius, closeness, height, held_points, span, twist
@@ -29,22 +29,6 @@ def unit_web(count: int = 11) -> Web:
     """Return the web scaled to a mean edge of 1."""
     web = vault_web(count)
     return Web(web.vertices / np.linalg.norm(web.vertices[1:, 1:] - web.vertices[:-1, :-1], axis=-1).mean())
-
-
-def perturbed(web: Web, amplitude: float = 0.05) -> Web:
-    shift = np.sin(1.0 + 2.3 * np.arange(web.vertices.size) ** 1.3).reshape(web.vertices.shape)
-    return Web(web.vertices + amplitude * shift)
-
-
-def central_differences(target: Target, web: Web, step: float = 1e-5) -> Floats:
-    columns = []
-    for unknown in range(web.vertices.size):
-        move = np.zeros(web.vertices.size)
-        move[unknown] = step
-        shift = move.reshape(web.vertices.shape)
-        ahead, behind = target(Web(web.vertices + shift)), target(Web(web.vertices - shift))
-        columns.append((ahead.residuals - behind.residuals) / (2.0 * step))
-    return np.stack(columns, axis=1)
 
 
 TARGETS: dict[str, Target] = {
