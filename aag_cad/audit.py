@@ -118,7 +118,7 @@ def end_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
 
 def clash_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     """Yield AAG401: parts that reach more than 1 mm into each other."""
-    for clash in clashes(gridshell.shells, CONTACT):
+    for clash in clashes(gridshell, CONTACT):
         mark = f"{clash.first} and {clash.second}"
         x, y, z = clash.point
         where = f"run into each other at ({x:.0f}, {y:.0f}, {z:.0f}) by"

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from aag_cad.parts.mesh import frame_matrix, regular_polygon, shell_mesh
+from aag_cad.parts.mesh import frame_matrix, shell_mesh
 from aag_cad.parts.model import Gridshell, Part, Shell, Stud
+from aag_cad.parts.triangles import regular_polygon
 from aag_cad.units import Floats
 from assembly.outline import plank_rings
 

@@ -9,10 +9,11 @@ from trimesh.visual.material import PBRMaterial
 
 from aag_cad.export.ifc_kinds import colour, colour_name
 from aag_cad.files import write_bytes
-from aag_cad.parts.mesh import Mesh, frame_matrix, product_mesh
-from aag_cad.parts.model import Frame, Gridshell, Part, shell_parts
+from aag_cad.parts.mesh import frame_matrix, product_mesh
+from aag_cad.parts.model import Frame, Gridshell, Part, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
 from aag_cad.parts.quantities import material
+from aag_cad.parts.triangles import Mesh
 from aag_cad.units import MM_PER_M, Floats
 
 _ROOT = "world"
@@ -28,12 +29,12 @@ def matrix_in_metres(frame: Frame) -> Floats:
 
 
 def _material(part: Part) -> PBRMaterial:
-    timber = material(part) == "timber"
+    metal = material(part) in ("steel", "aluminium")
     return PBRMaterial(
         name=colour_name(part),
         baseColorFactor=[round(255.0 * value) for value in colour(part)] + [255],
-        metallicFactor=0.0 if timber else 1.0,
-        roughnessFactor=0.8 if timber else 0.4,
+        metallicFactor=1.0 if metal else 0.0,
+        roughnessFactor=0.4 if metal else 0.8,
     )
 
 
@@ -60,8 +61,8 @@ def glb_scene(gridshell: Gridshell) -> trimesh.Scene:
         graph.update(shell.mark, gridshell.name, matrix=matrix_in_metres(shell.placement))
         for part in shell_parts(shell):
             add(part, shell.mark)
-    for blade in gridshell.blades:
-        add(blade, gridshell.name)
+    for part in ridge_parts(gridshell):
+        add(part, gridshell.name)
     return scene
 
 

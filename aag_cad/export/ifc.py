@@ -5,14 +5,14 @@ from collections.abc import Mapping, Sequence
 
 from aag_cad.export.ifc_base import Entity, IfcModel, aggregate, guid, local_placement, spatial_tree, start_file
 from aag_cad.export.ifc_bodies import mapped_shape
-from aag_cad.export.ifc_joints import joints_of, write_joints
+from aag_cad.export.ifc_joints import write_joints
 from aag_cad.export.ifc_kinds import IFC_KINDS
 from aag_cad.export.ifc_properties import write_piece_sets, write_product_sets
 from aag_cad.export.ifc_schedule import write_schedule
 from aag_cad.export.ifc_types import Product, associate_materials, define_types, products
 from aag_cad.files import replacing
 from aag_cad.parts.assemblies import beam_of_parts
-from aag_cad.parts.model import Frame, Gridshell, Part, Shell, all_parts, shell_parts
+from aag_cad.parts.model import Frame, Gridshell, Part, Shell, all_joints, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame
 from assembly.steps import Step
 
@@ -62,19 +62,19 @@ def _write_shell(
 def _write_vault(
     model: IfcModel, gridshell: Gridshell, storey: Entity, product_of: Mapping[str, Product]
 ) -> dict[str, Entity]:
-    """Write the vault with its shells and blades and return all elements by mark; only the vault is in the storey."""
+    """Write the vault with its shells and what joins them and return all elements by mark; only the vault is in the storey."""
     origin = model.identity.Location
     unmoved = model.file.create_entity("IfcCartesianTransformationOperator3D", LocalOrigin=origin)
     vault = _assembly(model, _VAULT, gridshell.name, "Gridshell", "SITE", storey.ObjectPlacement)
     elements: dict[str, Entity] = {}
     for shell in gridshell.shells:
         elements |= _write_shell(model, shell, vault, product_of, unmoved)
-    blades = {
-        blade.mark: _occurrence(model, blade, product_of[blade.mark], vault.ObjectPlacement, unmoved)
-        for blade in gridshell.blades
+    between = {
+        part.mark: _occurrence(model, part, product_of[part.mark], vault.ObjectPlacement, unmoved)
+        for part in ridge_parts(gridshell)
     }
-    elements |= blades
-    aggregate(model, _VAULT, vault, [*(elements[shell.mark] for shell in gridshell.shells), *blades.values()])
+    elements |= between
+    aggregate(model, _VAULT, vault, [*(elements[shell.mark] for shell in gridshell.shells), *between.values()])
     model.file.create_entity(
         "IfcRelContainedInSpatialStructure", guid(model.project_id, "contained"), None, None, None, [vault], storey
     )
@@ -94,7 +94,7 @@ def ifc_model(gridshell: Gridshell, steps: Sequence[Step] | None = None) -> IfcM
     for product in found:
         write_product_sets(model, product.key, product.parts, elements, gridshell.timber)
     write_piece_sets(model, parts, elements)
-    write_joints(model, joints_of(gridshell), {part.mark: part for part in parts}, elements)
+    write_joints(model, all_joints(gridshell), {part.mark: part for part in parts}, elements)
     if steps is not None:
         write_schedule(model, gridshell.name, steps, elements)
     return model

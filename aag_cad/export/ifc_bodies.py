@@ -1,13 +1,16 @@
 """Shapes of the products in IFC: triangulated bodies of timber, extruded bodies of steel, axes of planks, colours."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from aag_cad.export.ifc_base import Entity, IfcModel
 from aag_cad.export.ifc_kinds import colour, colour_name
-from aag_cad.parts.fasteners import bolt_pieces
+from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
 from aag_cad.parts.forming import plank_axes
-from aag_cad.parts.mesh import MESH_SPACING, product_mesh, regular_polygon
-from aag_cad.parts.model import Bolt, Part, Plank, Screw
+from aag_cad.parts.mesh import MESH_SPACING, product_mesh
+from aag_cad.parts.model import Bolt, Part, Plank, Rod, Screw
+from aag_cad.parts.triangles import regular_polygon
 from aag_cad.units import Floats
 
 _DIGITS = 3
@@ -45,11 +48,11 @@ def extrusion(model: IfcModel, profile: Entity, low: float, high: float) -> Enti
     return model.file.create_entity("IfcExtrudedAreaSolid", profile, at, up, high - low)
 
 
-def _bolt_solids(model: IfcModel, bolt: Bolt) -> list[Entity]:
-    """Return the pieces of a bolt, one upon the other, so that nothing overlaps."""
+def _threaded_solids(model: IfcModel, pieces: Iterable[BoltPiece]) -> list[Entity]:
+    """Return the pieces of a bolt or threaded rod, one upon the other, so that nothing overlaps."""
     return [
         extrusion(model, _hexagon(model, p.size) if p.hexagonal else _circle(model, p.size), p.low, p.high)
-        for p in bolt_pieces(bolt)
+        for p in pieces
     ]
 
 
@@ -57,7 +60,9 @@ def _body(model: IfcModel, part: Part) -> tuple[str, list[Entity]]:
     """Return the representation type and the items of a part's product."""
     match part:
         case Bolt():
-            return "SweptSolid", _bolt_solids(model, part)
+            return "SweptSolid", _threaded_solids(model, bolt_pieces(part))
+        case Rod():
+            return "SweptSolid", _threaded_solids(model, rod_pieces(part))
         case Screw():
             return "SweptSolid", [extrusion(model, _circle(model, part.diameter), 0.0, part.length)]
         case _:

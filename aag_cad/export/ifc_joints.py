@@ -4,21 +4,18 @@ from collections.abc import Iterable, Mapping
 
 from aag_cad.errors import NetworkError
 from aag_cad.export.ifc_base import Entity, IfcModel, guid
-from aag_cad.parts.model import Blade, CouplingBlock, Gridshell, Joint, Part, Plank, Stud
-
-
-def joints_of(gridshell: Gridshell) -> tuple[Joint, ...]:
-    """Return every joint, shell by shell, then those between the shells."""
-    return (*(joint for shell in gridshell.shells for joint in shell.joints), *gridshell.joints)
+from aag_cad.parts.model import Blade, CouplingBlock, Joint, Part, Plank, Shoe, Strap, Stud
 
 
 def joint_sides(joint: Joint, parts: Mapping[str, Part]) -> tuple[list[str], list[str]]:
     """Return the marks of what meets at a joint (at least two) and of what realises it, in the order of the joint.
 
-    Siblings meet others as their coupled beam, and only each other where nothing else meets; studs, blocks and blades
-    realise the joint. NetworkError if fewer than two members meet.
+    Siblings meet others as their coupled beam, and only each other where nothing else meets; studs, blocks and steel
+    plates realise the joint. NetworkError if fewer than two members meet.
     """
-    through = [mark for mark in joint.members if not isinstance(parts[mark], Stud | CouplingBlock | Blade)]
+    through = [
+        mark for mark in joint.members if not isinstance(parts[mark], Stud | CouplingBlock | Strap | Shoe | Blade)
+    ]
     as_beams = [part.beam if isinstance(part := parts[mark], Plank) and part.beam else mark for mark in through]
     for sides in (list(dict.fromkeys(as_beams)), through, list(joint.members)):
         if len(sides) >= 2:

@@ -5,13 +5,16 @@ from dataclasses import dataclass
 from aag_cad.parts.model import (
     Blade,
     Bolt,
+    ClampingBar,
     CouplingBlock,
     Footing,
     Mullion,
     Part,
     Plank,
+    Rod,
     Screw,
     Shoe,
+    Strap,
     Strip,
     Stud,
 )
@@ -34,7 +37,10 @@ IFC_KINDS: dict[type[Part], IfcKind] = {
     Screw: IfcKind("IfcMechanicalFastener", "SCREW"),
     Strip: IfcKind("IfcPlate", "SHEET"),
     Mullion: IfcKind("IfcMember", "MULLION"),
+    ClampingBar: IfcKind("IfcMember", "USERDEFINED", "Clamping bar"),
+    Strap: IfcKind("IfcPlate", "USERDEFINED", "Strap"),
     Shoe: IfcKind("IfcDiscreteAccessory", "SHOE"),
+    Rod: IfcKind("IfcMechanicalFastener", "ANCHORBOLT"),
     Footing: IfcKind("IfcFooting", "PAD_FOOTING"),
     Blade: IfcKind("IfcPlate", "USERDEFINED", "Ridge blade"),
 }
@@ -47,7 +53,10 @@ _KIND_COLOURS: dict[type[Part], str] = {
     Screw: "#B8BEC6",
     Strip: "#CFE6F2",
     Mullion: "#A7ADB5",
+    ClampingBar: "#C3C8CE",
+    Strap: "#6C737C",
     Shoe: "#6C737C",
+    Rod: "#8A9099",
     Footing: "#9C9A95",
     Blade: "#6C737C",
 }

@@ -9,7 +9,6 @@ from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import CouplingBlock, Hole, Part, Plank, Stud, Timber
 from aag_cad.parts.products import product_name
 from aag_cad.parts.quantities import (
-    STEEL_DENSITY,
     density,
     gross_volume,
     hole_count,
@@ -163,11 +162,9 @@ def write_piece_sets(model: IfcModel, parts: Iterable[Part], occurrences: Mappin
             write_property_set(model, FABRICATION, part.mark, fabrication(part), [occurrences[part.mark]])
 
 
-def material_properties(model: IfcModel, material: Entity, timber: Timber | None) -> None:
-    """Write density, and for timber species, strength class and moduli, of a material; steel if no timber is given."""
-    sets: dict[str, list[Property]] = {
-        "Pset_MaterialCommon": [("MassDensity", "IfcMassDensityMeasure", timber.density if timber else STEEL_DENSITY)]
-    }
+def material_properties(model: IfcModel, material: Entity, density: float, timber: Timber | None = None) -> None:
+    """Write the density (kg/m3), and for timber species, strength class and moduli, of a material."""
+    sets: dict[str, list[Property]] = {"Pset_MaterialCommon": [("MassDensity", "IfcMassDensityMeasure", density)]}
     if timber is not None:
         sets["Pset_MaterialWood"] = [
             ("Species", "IfcLabel", timber.species),

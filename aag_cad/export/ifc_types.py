@@ -7,9 +7,18 @@ from aag_cad.export.ifc_base import Entity, IfcModel, guid
 from aag_cad.export.ifc_bodies import representation_maps, surface_style
 from aag_cad.export.ifc_kinds import IFC_KINDS, colour_name
 from aag_cad.export.ifc_properties import material_properties
-from aag_cad.parts.model import Bolt, Part, Screw, Timber
+from aag_cad.parts.model import Bolt, Part, Rod, Screw, Timber
 from aag_cad.parts.products import product_key, product_name
-from aag_cad.parts.quantities import material, material_name
+from aag_cad.parts.quantities import Material, density, material, material_name
+
+# The categories that IfcMaterial proposes.
+_CATEGORIES: dict[Material, str] = {
+    "timber": "wood",
+    "steel": "steel",
+    "aluminium": "aluminium",
+    "polycarbonate": "plastic",
+    "concrete": "concrete",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +40,9 @@ def _by_product(parts: Iterable[Part]) -> dict[str, list[Part]]:
 
 def _type_object(model: IfcModel, key: str, part: Part, maps: list[Entity]) -> Entity:
     kind = IFC_KINDS[type(part)]
-    nominal = {"NominalDiameter": part.diameter, "NominalLength": part.length} if isinstance(part, Bolt | Screw) else {}
+    nominal = (
+        {"NominalDiameter": part.diameter, "NominalLength": part.length} if isinstance(part, Bolt | Screw | Rod) else {}
+    )
     return model.file.create_entity(
         f"{kind.entity}Type", guid(model.project_id, "type", key), None, product_name(part),
         RepresentationMaps=maps, ElementType=kind.element_type, PredefinedType=kind.predefined, **nominal,
@@ -67,14 +78,14 @@ def define_types(model: IfcModel, found: list[Product], occurrences: Mapping[str
 def associate_materials(
     model: IfcModel, found: list[Product], occurrences: Mapping[str, Entity], timber: Timber
 ) -> None:
-    """Write timber and steel, and give them to types and occurrences (not every viewer looks at the type)."""
-    for name in ("timber", "steel"):
+    """Write the materials, and give them to types and occurrences (not every viewer looks at the type)."""
+    for name, category in _CATEGORIES.items():
         of_it = [product for product in found if material(product.parts[0]) == name]
         if not of_it:
             continue
         title = material_name(of_it[0].parts[0], timber)
-        entity = model.file.create_entity("IfcMaterial", title, None, "wood" if name == "timber" else "steel")
-        material_properties(model, entity, timber if name == "timber" else None)
+        entity = model.file.create_entity("IfcMaterial", title, None, category)
+        material_properties(model, entity, density(of_it[0].parts[0], timber), timber if name == "timber" else None)
         related = [product.type for product in of_it]
         related += [occurrences[part.mark] for product in of_it for part in product.parts]
         model.file.create_entity(

@@ -16,7 +16,7 @@ from aag_cad.export.ifc_kinds import colour
 from aag_cad.export.step_text import Header, kernel_settings, named, placement, step_bytes
 from aag_cad.files import write_bytes
 from aag_cad.parts.assemblies import beam_of_parts
-from aag_cad.parts.model import Frame, Gridshell, Shell, shell_parts
+from aag_cad.parts.model import Frame, Gridshell, Shell, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
 from aag_cad.solids.products import product_solids
 
@@ -55,8 +55,8 @@ def _document(gridshell: Gridshell, solids: Mapping[str, TopoDS_Solid]) -> TDocS
     products = _products(tools, gridshell, solids)
     for shell in gridshell.shells:
         _add(tools, vault, _shell(tools, shell, products), shell.placement, shell.mark)
-    for blade in gridshell.blades:
-        _add(tools, vault, products[product_key(blade)], part_frame(blade), blade.mark)
+    for part in ridge_parts(gridshell):
+        _add(tools, vault, products[product_key(part)], part_frame(part), part.mark)
     tools.shapes.UpdateAssemblies()
     return document
 
@@ -65,8 +65,7 @@ def _products(tools: _Tools, gridshell: Gridshell, solids: Mapping[str, TopoDS_S
     """Return the labels of all products by key; products of the same name but different make are numbered."""
     labels: dict[str, TDF_Label] = {}
     taken: Counter[str] = Counter()
-    parts = [part for shell in gridshell.shells for part in shell_parts(shell)]
-    for part in [*parts, *gridshell.blades]:
+    for part in all_parts(gridshell):
         key = product_key(part)
         if key in labels:
             continue

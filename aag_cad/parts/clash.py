@@ -6,16 +6,42 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from aag_cad.parts.fasteners import bolt_pieces
+from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
 from aag_cad.parts.forming import blank_points, formed_points
 from aag_cad.parts.mesh import frame_matrix, product_mesh
-from aag_cad.parts.model import Bolt, CouplingBlock, Frame, Part, Plank, Screw, Shell, Stud, shell_parts
+from aag_cad.parts.model import (
+    Blade,
+    Bolt,
+    ClampingBar,
+    CouplingBlock,
+    Footing,
+    Frame,
+    Gridshell,
+    Mullion,
+    Part,
+    Plank,
+    Rod,
+    Screw,
+    Shoe,
+    Strap,
+    Strip,
+    Stud,
+    all_joints,
+    ridge_parts,
+    shell_parts,
+)
+from aag_cad.parts.plates import leg_points, plate_depth
 from aag_cad.parts.products import part_frame, product_key
 from aag_cad.units import Floats, Vector, vector
 
+_BARS = Plank | Mullion | ClampingBar | Strap
 _FACE_SPACING = 12.0
 _EDGE_SPACING = 4.0
 _STRETCH = 250.0
+
+
+_BETWEEN = -1
+_VAULT = Frame((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 @dataclass(frozen=True)
@@ -67,12 +93,16 @@ def _box_points(length: float, width: float, thickness: float) -> Floats:
 
 def _surface_points(part: Part) -> Floats:
     """Return points on the surface of a part in product coordinates, (n, 3)."""
-    if isinstance(part, Plank):
+    if isinstance(part, _BARS):
         section = part.blank.section
         points = _box_points(part.blank.length, section.width, section.thickness)
         return formed_points(part, points + np.array([part.blank.length / 2.0, 0.0, 0.0]))
     if isinstance(part, CouplingBlock):
         return _box_points(part.length, part.width, part.thickness)
+    if isinstance(part, Footing):
+        return _box_points(part.length, part.width, part.height) - np.array([0.0, 0.0, part.height / 2.0])
+    if isinstance(part, Shoe | Blade):
+        return leg_points(part.plate, _EDGE_SPACING)
     mesh = product_mesh(part)
     low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
     ring = mesh.vertices[np.isclose(mesh.vertices[:, 2], low)]
@@ -81,15 +111,15 @@ def _surface_points(part: Part) -> Floats:
     return np.concatenate([np.column_stack([walls, np.repeat(heights, len(ring))]), mesh.vertices])
 
 
-def _bolt_depth(bolt: Bolt, points: Floats) -> Floats:
+def _threaded_depth(pieces: Iterable[BoltPiece], points: Floats) -> Floats:
     radius, height = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
-    pieces = [np.minimum.reduce([p.size / 2.0 - radius, height - p.low, p.high - height]) for p in bolt_pieces(bolt)]
-    return np.asarray(np.maximum.reduce(pieces))
+    depths = [np.minimum.reduce([p.size / 2.0 - radius, height - p.low, p.high - height]) for p in pieces]
+    return np.asarray(np.maximum.reduce(depths))
 
 
 def _depth(part: Part, points: Floats) -> Floats:
     """Return how deep points (n, 3) in product coordinates lie inside a part, mm, (n,); negative outside."""
-    if isinstance(part, Plank):
+    if isinstance(part, _BARS):
         x, y, z = blank_points(part, points).T
         half_width, half_thickness = part.blank.section.width / 2.0, part.blank.section.thickness / 2.0
         sides = [x, part.blank.length - x, half_width - np.abs(y), half_thickness - np.abs(z)]
@@ -103,7 +133,14 @@ def _depth(part: Part, points: Floats) -> Floats:
         ends = part.length / 2.0 - np.abs(points[:, 2])
         return np.asarray(np.minimum(part.across_flats / 2.0 - flats.max(axis=1), ends))
     if isinstance(part, Bolt):
-        return _bolt_depth(part, points)
+        return _threaded_depth(bolt_pieces(part), points)
+    if isinstance(part, Rod):
+        return _threaded_depth(rod_pieces(part), points)
+    if isinstance(part, Shoe | Blade):
+        return plate_depth(part.plate, points)
+    if isinstance(part, Footing):
+        sides = [part.length / 2.0 - np.abs(points[:, 0]), part.width / 2.0 - np.abs(points[:, 1])]
+        return np.asarray(np.minimum.reduce([*sides, -points[:, 2], points[:, 2] + part.height]))
     if isinstance(part, Screw):
         inside = part.diameter / 2.0 - np.hypot(points[:, 0], points[:, 1])
         return np.asarray(np.minimum.reduce([inside, points[:, 2], part.length - points[:, 2]]))
@@ -125,13 +162,13 @@ def _pieces(index: int, body: _Body, groups: list[Floats]) -> Iterator[_Piece]:
 
 
 def _point_groups(part: Part) -> list[Floats]:
-    """Return a part's surface points, those of a plank in stretches of about 250 mm so that boxes stay tight."""
+    """Return a part's surface points, those of a long part in stretches of about 250 mm so that boxes stay tight."""
     points = _surface_points(part)
-    if not isinstance(part, Plank):
+    if not isinstance(part, Plank | Mullion | ClampingBar | Strip):
         return [points]
-    ends = part.curve.points[[0, -1]]
-    order = np.argsort(points @ (ends[1] - ends[0]), kind="stable")
-    return np.array_split(points[order], max(1, round(part.curve.length / _STRETCH)))
+    curve = part.left if isinstance(part, Strip) else part.curve
+    order = np.argsort(points @ (curve.points[-1] - curve.points[0]), kind="stable")
+    return np.array_split(points[order], max(1, round(curve.length / _STRETCH)))
 
 
 def _near_pairs(boxes: Floats) -> Iterator[tuple[int, int]]:
@@ -145,12 +182,11 @@ def _near_pairs(boxes: Floats) -> Iterator[tuple[int, int]]:
             yield int(order[i]), int(order[i + 1 + j])
 
 
-def _own_pairs(shells: list[Shell]) -> set[tuple[str, str]]:
+def _own_pairs(gridshell: Gridshell) -> set[tuple[str, str]]:
     """Return (fastener, member) for every bolt and screw and the members of its own joint."""
     return {
         (fastener, member)
-        for shell in shells
-        for joint in shell.joints
+        for joint in all_joints(gridshell)
         for fastener in joint.fasteners
         for member in joint.members
     }
@@ -162,16 +198,17 @@ def _repeated(bodies: list[_Body], count: int) -> set[int]:
     return {i for i in range(1, count) if keys[i] == keys[0]}
 
 
-def clashes(shells: Iterable[Shell], limit: float) -> list[Clash]:
+def clashes(gridshell: Gridshell, limit: float) -> list[Clash]:
     """Return the pairs of parts that reach more than ``limit`` mm into each other, deepest first, vault coordinates.
 
     Broad phase by bounding boxes; then points on each surface (every 12 mm, along edges every 4 mm) are taken into the
     other part's own coordinates, where their depth is exact. A bolt or screw belongs into the members of its own joint
     and is not held against them.
     """
-    listed = list(shells)
-    bodies = [_body(part, i, shell.placement) for i, shell in enumerate(listed) for part in shell_parts(shell)]
-    own, repeated = _own_pairs(listed), _repeated(bodies, len(listed))
+    shells = gridshell.shells
+    bodies = [_body(part, i, shell.placement) for i, shell in enumerate(shells) for part in shell_parts(shell)]
+    bodies += [_body(part, _BETWEEN, _VAULT) for part in ridge_parts(gridshell)]
+    own, repeated = _own_pairs(gridshell), _repeated(bodies, len(shells))
     samples = {body.key: _point_groups(body.part) for body in {body.key: body for body in bodies}.values()}
     pieces = [piece for index, body in enumerate(bodies) for piece in _pieces(index, body, samples[body.key])]
     inside: dict[int, list[tuple[int, Floats]]] = defaultdict(list)

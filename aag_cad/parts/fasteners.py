@@ -9,7 +9,7 @@ import numpy as np
 
 from aag_cad.errors import DesignError
 from aag_cad.geometry.surface import unit
-from aag_cad.parts.model import Bolt, Frame, Screw
+from aag_cad.parts.model import Bolt, Frame, Rod, Screw
 from aag_cad.resources import template
 from aag_cad.units import Floats, vector
 
@@ -57,6 +57,22 @@ def hexagon_bolt(mark: str, diameter: float, grip: float, frame: Frame) -> Bolt:
     )
 
 
+def threaded_rod(mark: str, diameter: float, length: float, nuts: tuple[float, float], frame: Frame) -> Rod:
+    """Return a threaded rod (DIN 976-1) with ISO 4032 nuts and ISO 7093-1 washers at two heights over its lower end."""
+    size = _catalogue()[f"M{diameter:g}"]
+    return Rod(
+        mark=mark,
+        frame=frame,
+        diameter=float(diameter),
+        length=length,
+        nuts=nuts,
+        across_flats=size["across_flats"],
+        nut_height=size["nut_height"],
+        washer_diameter=size["washer_diameter"],
+        washer_thickness=size["washer_thickness"],
+    )
+
+
 def wood_screw(mark: str, diameter: float, length: float, frame: Frame) -> Screw:
     """Return a countersunk wood screw; its head is twice as wide as its shank."""
     return Screw(mark, frame, diameter, length, _SCREW_HEAD * diameter)
@@ -84,3 +100,17 @@ def bolt_pieces(bolt: Bolt) -> tuple[BoltPiece, ...]:
         BoltPiece(False, bolt.diameter, nut + bolt.nut_height, bolt.length - t),
     )
     return tuple(piece for piece in pieces if piece.high > piece.low)
+
+
+def rod_pieces(rod: Rod) -> tuple[BoltPiece, ...]:
+    """Return shank, nuts and washers of a threaded rod from its lower end upwards."""
+    (low, high), t, m, d = rod.nuts, rod.washer_thickness, rod.nut_height, rod.diameter
+    return (
+        BoltPiece(False, d, 0.0, low - t - m),
+        BoltPiece(True, rod.across_flats, low - t - m, low - t),
+        BoltPiece(False, rod.washer_diameter, low - t, low),
+        BoltPiece(False, d, low, high),
+        BoltPiece(False, rod.washer_diameter, high, high + t),
+        BoltPiece(True, rod.across_flats, high + t, high + t + m),
+        BoltPiece(False, d, high + t + m, rod.length),
+    )

@@ -4,28 +4,28 @@ import numpy as np
 
 from aag_cad.geometry.framed import Frames, frames_at, nearest_station
 from aag_cad.geometry.surface import dot
-from aag_cad.parts.model import Plank
+from aag_cad.parts.model import FlatBar, Plank
 from aag_cad.units import Floats
 
 
-def plank_axes(plank: Plank, stations: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+def plank_axes(plank: FlatBar, stations: Floats) -> tuple[Floats, Floats, Floats, Floats]:
     """Return centre points, length, width and thickness directions at stations; each (n, 3), a right-handed frame.
 
-    An upright plank turns its width to the surface normal, a flat one its thickness.
+    An upright plank turns its width to the surface normal, a flat one its thickness; so does every metal bar.
     """
     frames: Frames = frames_at(plank.curve, stations)
-    if plank.upright:
+    if isinstance(plank, Plank) and plank.upright:
         return frames.point, frames.tangent, frames.normal, -frames.binormal
     return frames.point, frames.tangent, frames.binormal, frames.normal
 
 
-def formed_points(plank: Plank, blank_points: Floats) -> Floats:
+def formed_points(plank: FlatBar, blank_points: Floats) -> Floats:
     """Return where the points (n, 3) of the straight blank go when the plank is bent and twisted into place, (n, 3)."""
     point, _tangent, width, thickness = plank_axes(plank, blank_points[:, 0])
     return point + blank_points[:, 1:2] * width + blank_points[:, 2:3] * thickness
 
 
-def blank_points(plank: Plank, points: Floats) -> Floats:
+def blank_points(plank: FlatBar, points: Floats) -> Floats:
     """Return the coordinates (n, 3) in the straight blank of points (n, 3) near the formed plank."""
     samples = plank.curve.points
     nearest = np.argmin(np.linalg.norm(points[:, None, :] - samples[None, :, :], axis=2), axis=1)
@@ -35,7 +35,7 @@ def blank_points(plank: Plank, points: Floats) -> Floats:
     return np.column_stack([stations, dot(gap, width), dot(gap, thickness)])
 
 
-def axis_piercings(plank: Plank, origins: Floats, directions: Floats) -> Floats:
+def axis_piercings(plank: FlatBar, origins: Floats, directions: Floats) -> Floats:
     """Return the blank coordinates (n, 2) where straight axes (n, 3) pierce the middle surface of the formed plank.
 
     The origins must lie near the plank. This is what makes siblings differ: the bolt is straight in space, and each

@@ -1,8 +1,10 @@
 """The grammar of marks: the one place that prints and parses them.
 
 S1 shell; S1-A1-07 beam, S1-A1-07-L and -R its planks; S1-G-05 geodesic; S1-E-02 edge plank; S1-N-031 stud and AA joint;
-S1-K-012 coupling block and its joint; S1-F-05 shoe and foot joint; S1-R-05 ridge end of a geodesic; S1-C-05 concrete
-block; S1-P-05 strip; S1-M-05 mullion; R12-03 ridge blade; a bolt or screw adds -B1 or -W1 to the mark of its joint.
+S1-K-012 coupling block and its joint; S1-F-05 shoe and foot joint; S1-R-05 strap and ridge joint of a geodesic;
+S1-C-05 concrete block; S1-P-05 strip; S1-M-05 mullion; S1-D-05 clamping bar; S1-V-012 joint of mullion, strips and
+clamping bar on a block; R12-03 ridge blade and its joint; a bolt, screw or threaded rod adds -B1, -W1 or -T1 to the
+mark of its joint.
 """
 
 import re
@@ -10,11 +12,11 @@ from dataclasses import dataclass
 
 from aag_cad.errors import MarkError
 
-_WIDTH = {"A1": 2, "A2": 2, "G": 2, "E": 2, "F": 2, "R": 2, "C": 2, "P": 2, "M": 2, "N": 3, "K": 3}
+_WIDTH = {"A1": 2, "A2": 2, "G": 2, "E": 2, "F": 2, "R": 2, "C": 2, "P": 2, "M": 2, "D": 2, "N": 3, "K": 3, "V": 3}
 _PATTERN = re.compile(
-    r"S(?P<shell>[1-9]\d?)(?:-(?P<family>A1|A2|[GEFRCPMNK])-(?P<index>\d{2,5})(?:-(?P<part>[LR]|[BW][1-9]\d?))?)?"
+    r"S(?P<shell>[1-9]\d?)(?:-(?P<family>A1|A2|[GEFRCPMDNKV])-(?P<index>\d{2,5})(?:-(?P<part>[LR]|[BWT][1-9]\d?))?)?"
 )
-_BLADE = re.compile(r"R(?P<pair>[1-9][1-9])-(?P<index>\d{2,5})")
+_BLADE = re.compile(r"R(?P<pair>[1-9][1-9])-(?P<index>\d{2,5})(?:-(?P<part>B[1-9]\d?))?")
 
 
 @dataclass(frozen=True, order=True)
@@ -32,7 +34,7 @@ class Mark:
     def __str__(self) -> str:
         """Return the mark as it is printed everywhere."""
         if self.shell == 0:
-            return f"{self.family}-{self.index:02d}"
+            return f"{self.family}-{self.index:02d}" + (f"-{self.part}" if self.part else "")
         text = f"S{self.shell}"
         if self.family:
             text += f"-{self.family}-{self.index:0{_WIDTH[self.family]}d}"
@@ -42,7 +44,7 @@ class Mark:
 def parse_mark(text: str) -> Mark:
     """Return the parsed mark; MarkError if the text is not one, or not printed as we print it."""
     if blade := _BLADE.fullmatch(text):
-        mark = Mark(0, f"R{blade['pair']}", int(blade["index"]))
+        mark = Mark(0, f"R{blade['pair']}", int(blade["index"]), blade["part"] or "")
     elif found := _PATTERN.fullmatch(text):
         mark = Mark(int(found["shell"]), found["family"] or "", int(found["index"] or 0), found["part"] or "")
     else:
@@ -52,7 +54,7 @@ def parse_mark(text: str) -> Mark:
     if not mark.shell and mark.family[1] == mark.family[2]:
         raise MarkError(f"{text!r} is not a mark: a ridge blade joins two different shells, as in R12-03")
     if mark.part and (mark.part in "LR") != (mark.family in ("A1", "A2")):
-        raise MarkError(f"{text!r} is not a mark: only planks of A beams end in L or R, only fasteners in B1 or W1")
+        raise MarkError(f"{text!r} is not a mark: only planks of A beams end in L or R, only fasteners in B1, W1 or T1")
     if str(mark) != text or (mark.family and mark.index == 0):
         raise MarkError(f"{text!r} is not a mark as it is printed; {str(mark)!r} would be, with indices from 1")
     return mark

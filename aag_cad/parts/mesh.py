@@ -1,63 +1,39 @@
-"""Closed triangle meshes of the parts, for exchange, pictures and clash tests; faces turn outwards."""
+"""Closed triangle meshes of the parts, for exchange, pictures and clash tests."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
 
 import numpy as np
 
-from aag_cad.parts.fasteners import bolt_pieces
+from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
 from aag_cad.parts.forming import formed_points
-from aag_cad.parts.model import Bolt, CouplingBlock, Frame, Part, Plank, Screw, Stud
+from aag_cad.parts.model import (
+    Blade,
+    Bolt,
+    ClampingBar,
+    CouplingBlock,
+    FlatBar,
+    Footing,
+    Frame,
+    Mullion,
+    Part,
+    Plank,
+    Rod,
+    Screw,
+    Shoe,
+    Strap,
+    Stud,
+)
+from aag_cad.parts.plates import plate_rings
 from aag_cad.parts.products import part_frame
-from aag_cad.units import Floats, Ints
+from aag_cad.parts.triangles import Mesh, joined, prism, regular_polygon, round_polygon, tube
+from aag_cad.units import Floats
 
 MESH_SPACING = 120.0
-_ROUND_SIDES = 12
 
 
-@dataclass(frozen=True, eq=False)
-class Mesh:
-    """A closed triangle mesh: vertices (n, 3) float, faces (m, 3) int, counter-clockwise from outside."""
-
-    vertices: Floats
-    faces: Ints
-
-    @property
-    def volume(self) -> float:
-        """The enclosed volume by the divergence theorem, mm3; positive if the faces turn outwards."""
-        a, b, c = (self.vertices[self.faces[:, i]] for i in range(3))
-        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
-
-
-def joined(meshes: list[Mesh]) -> Mesh:
-    """Return several meshes as one (their volumes must not overlap)."""
-    starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes[:-1]])
-    return Mesh(
-        np.concatenate([mesh.vertices for mesh in meshes]),
-        np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)]),
-    )
-
-
-def tube(rings: Floats) -> Mesh:
-    """Return the closed mesh over rings (k, m, 3) of a convex section, counter-clockwise seen against the sweep.
-
-    Facing quads are split along the same physical diagonal for rings of four, so that thin planks keep their volume.
-    """
-    count, sides, _ = rings.shape
-    faces = []
-    for i in range(count - 1):
-        for j in range(sides):
-            a, b = i * sides + j, i * sides + (j + 1) % sides
-            c, d = b + sides, a + sides
-            faces += [(a, b, c), (a, c, d)] if j % 4 < 2 else [(a, b, d), (b, c, d)]
-    last = (count - 1) * sides
-    faces += [(0, j + 1, j) for j in range(1, sides - 1)]
-    faces += [(last, last + j, last + j + 1) for j in range(1, sides - 1)]
-    return Mesh(rings.reshape(-1, 3), np.array(faces, dtype=np.int64))
-
-
-def plank_mesh(plank: Plank, spacing: float = MESH_SPACING) -> Mesh:
-    """Return the formed plank without its holes, with a ring of four corners about every ``spacing`` mm."""
+def plank_mesh(plank: FlatBar, spacing: float = MESH_SPACING) -> Mesh:
+    """Return the formed plank or bar without its holes, with a ring of four corners about every ``spacing`` mm."""
     section = plank.blank.section
     count = max(2, math.ceil(plank.blank.length / spacing) + 1)
     y, z = section.width / 2.0, section.thickness / 2.0
@@ -66,47 +42,36 @@ def plank_mesh(plank: Plank, spacing: float = MESH_SPACING) -> Mesh:
     return tube(formed_points(plank, np.column_stack([stations, np.tile(corners, (count, 1))])).reshape(count, 4, 3))
 
 
-def prism(outline: Floats, low: float, high: float) -> Mesh:
-    """Return the prism over a convex outline (m, 2), counter-clockwise, between two heights."""
-    ring = np.column_stack([outline, np.zeros(len(outline))])
-    return tube(np.array([ring + np.array([0.0, 0.0, low]), ring + np.array([0.0, 0.0, high])]))
-
-
-def regular_polygon(sides: int, across_flats: float) -> Floats:
-    """Return a regular polygon (sides, 2), counter-clockwise, with a flat whose outward normal is +x."""
-    angles = (np.arange(sides) - 0.5) * 2.0 * math.pi / sides
-    return across_flats / 2.0 / math.cos(math.pi / sides) * np.column_stack([np.cos(angles), np.sin(angles)])
-
-
-def round_polygon(diameter: float) -> Floats:
-    """Return a polygon of twelve sides with the area of the circle."""
-    area = math.pi * diameter**2 / 4.0
-    return regular_polygon(_ROUND_SIDES, 2.0 * math.sqrt(area / (_ROUND_SIDES * math.tan(math.pi / _ROUND_SIDES))))
-
-
-def _bolt_mesh(bolt: Bolt) -> Mesh:
+def _threaded_mesh(pieces: Iterable[BoltPiece]) -> Mesh:
     return joined(
-        [
-            prism(regular_polygon(6, p.size) if p.hexagonal else round_polygon(p.size), p.low, p.high)
-            for p in bolt_pieces(bolt)
-        ]
+        [prism(regular_polygon(6, p.size) if p.hexagonal else round_polygon(p.size), p.low, p.high) for p in pieces]
     )
+
+
+def _rectangle(length: float, width: float) -> Floats:
+    x, y = length / 2.0, width / 2.0
+    return np.array([(-x, -y), (x, -y), (x, y), (-x, y)])
 
 
 def product_mesh(part: Part) -> Mesh:
     """Return a part's mesh in product coordinates: those of its frame, or of its shell where it has none."""
     match part:
-        case Plank():
+        case Plank() | Mullion() | ClampingBar() | Strap():
             return plank_mesh(part)
         case Stud():
             return prism(regular_polygon(6, part.across_flats), -part.length / 2.0, part.length / 2.0)
         case CouplingBlock():
-            x, y, z = part.length / 2.0, part.width / 2.0, part.thickness / 2.0
-            return prism(np.array([(-x, -y), (x, -y), (x, y), (-x, y)]), -z, z)
+            return prism(_rectangle(part.length, part.width), -part.thickness / 2.0, part.thickness / 2.0)
+        case Footing():
+            return prism(_rectangle(part.length, part.width), -part.height, 0.0)
         case Bolt():
-            return _bolt_mesh(part)
+            return _threaded_mesh(bolt_pieces(part))
+        case Rod():
+            return _threaded_mesh(rod_pieces(part))
         case Screw():
             return prism(round_polygon(part.diameter), 0.0, part.length)
+        case Shoe() | Blade():
+            return tube(plate_rings(part.plate))
         case _:
             raise NotImplementedError(f"{part.mark}: parts of this kind are not placed yet")
 

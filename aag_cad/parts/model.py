@@ -12,9 +12,9 @@ from aag_cad.geometry.framed import FramedCurve
 from aag_cad.network.model import Family
 from aag_cad.units import Vector
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
-JointKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "ridge", "blade"]
+JointKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "ridge", "blade", "cover"]
 HoleUse: TypeAlias = Literal["bolt", "screw"]
 
 
@@ -38,13 +38,17 @@ class CrossSection:
 
 @dataclass(frozen=True)
 class Hole:
-    """A round hole through the thickness of a blank: centre (station, offset), diameter, mm; for which joint."""
+    """A hole through the thickness of a blank: centre (station, offset), diameter, mm; for which joint.
+
+    ``slot`` is how much longer than round it is, along the blank; 0 is round.
+    """
 
     station: float
     offset: float
     diameter: float
     use: HoleUse
     joint: str
+    slot: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -172,39 +176,105 @@ class Screw:
 
 
 @dataclass(frozen=True)
+class Rod:
+    """A threaded rod with a nut and a washer under and over a plate: ``frame.origin`` is its lower end, z points up.
+
+    ``nuts`` are the heights at which the lower nut's washer carries the plate and the upper nut's washer presses on it.
+    """
+
+    mark: str
+    frame: Frame
+    diameter: float
+    length: float
+    nuts: tuple[float, float]
+    across_flats: float
+    nut_height: float
+    washer_diameter: float
+    washer_thickness: float
+
+
+@dataclass(frozen=True)
 class Strip:
-    """A polycarbonate strip between two neighbouring geodesics, bent along them."""
+    """A sheet between two neighbouring geodesics, bent along them: a developable surface by its straight rulings.
+
+    ``left`` and ``right`` are its edges at mid-thickness, with equally many samples: sample i of both are the ends of
+    ruling i; their normals are those of the sheet, outwards. The rulings have the parameter 0 (first) to 1 (last).
+    ``lower`` and ``upper`` are the parameters at which the sheet ends, at equal fractions of the rulings from left to
+    right; in between the ends are straight in the flat pattern.
+    """
 
     mark: str
     left: FramedCurve
     right: FramedCurve
     thickness: float
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
 
 
 @dataclass(frozen=True)
 class Mullion:
-    """An aluminium profile along a geodesic that clamps two strips."""
+    """An aluminium bar along a geodesic, bent flat-ways over the outer beams; two strips lie on it."""
 
     mark: str
     curve: FramedCurve
+    blank: Blank
+
+
+@dataclass(frozen=True)
+class ClampingBar:
+    """An aluminium bar over a mullion that clamps the edges of the strips."""
+
+    mark: str
+    curve: FramedCurve
+    blank: Blank
+
+
+@dataclass(frozen=True)
+class Strap:
+    """A flat steel bar on the end of a geodesic and the edge plank that it stops at, bent flat-ways to both."""
+
+    mark: str
+    curve: FramedCurve
+    blank: Blank
+
+
+@dataclass(frozen=True)
+class PlateHole:
+    """A round hole through a folded plate: station along its line, offset across it, diameter, mm."""
+
+    station: float
+    offset: float
+    diameter: float
+
+
+@dataclass(frozen=True)
+class FoldedPlate:
+    """A steel plate folded along parallel lines: its centre line (x, z) in the plane y = 0 of its frame; width along y.
+
+    ``line`` is a polyline; a hole is square to the leg that it lies in.
+    """
+
+    line: tuple[tuple[float, float], ...]
     width: float
-    height: float
+    thickness: float
+    holes: tuple[PlateHole, ...]
 
 
 @dataclass(frozen=True)
 class Shoe:
-    """The steel shoe at the foot of a geodesic; length along x, width along y, height along z."""
+    """The steel shoe at the foot of a geodesic: an upright on geodesic and edge plank, a foot over the block.
+
+    z of the frame is up, x the outward normal of the shell made level, the origin the foot joint.
+    """
 
     mark: str
     frame: Frame
-    length: float
-    width: float
-    height: float
+    plate: FoldedPlate
 
 
 @dataclass(frozen=True)
 class Footing:
-    """A precast concrete block under a shoe; length along x, width along y, height along z."""
+    """A precast concrete block under a shoe; ``frame.origin`` is the centre of its top, z points up."""
 
     mark: str
     frame: Frame
@@ -215,22 +285,23 @@ class Footing:
 
 @dataclass(frozen=True)
 class Blade:
-    """A steel blade in a ridge plane between two shells; length along x, height along y, thickness along z."""
+    """A folded steel plate between the ridge planks of two shells; its frame is in vault coordinates.
+
+    y of the frame runs along the fold in the ridge plane, z points outwards in that plane.
+    """
 
     mark: str
     frame: Frame
-    length: float
-    height: float
-    thickness: float
-    holes: tuple[Hole, ...]
+    plate: FoldedPlate
 
 
 @dataclass(frozen=True)
 class Joint:
-    """What meets where: the members joined (planks, studs, blocks) and the fasteners, by mark.
+    """What meets where: the members joined (planks, studs, blocks, bars, plates) and the fasteners, by mark.
 
     AA: two beams on a stud; AG: a geodesic on a coupling block of a beam; boundary: an edge plank on such a block;
-    foot, ridge: the end of a geodesic at the bottom or ridge plank; blade: two shells at the ridge.
+    foot: the end of a geodesic, the bottom plank, shoe and footing; ridge: the end of a geodesic at an edge plank, by
+    a strap; blade: two shells at the ridge; cover: strips between mullion and clamping bar on a coupling block.
     """
 
     mark: str
@@ -254,10 +325,13 @@ class Shell:
     bolts: tuple[Bolt, ...]
     screws: tuple[Screw, ...]
     joints: tuple[Joint, ...]
-    strips: tuple[Strip, ...] = ()
-    mullions: tuple[Mullion, ...] = ()
+    straps: tuple[Strap, ...] = ()
     shoes: tuple[Shoe, ...] = ()
+    rods: tuple[Rod, ...] = ()
     footings: tuple[Footing, ...] = ()
+    mullions: tuple[Mullion, ...] = ()
+    strips: tuple[Strip, ...] = ()
+    clamps: tuple[ClampingBar, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -277,7 +351,10 @@ class Timber:
 
 @dataclass(frozen=True)
 class Gridshell:
-    """The whole structure; ``ground`` is the height of the ground in vault coordinates, mm."""
+    """The whole structure; ``ground`` is the height of the ground in vault coordinates, mm.
+
+    Blades, their bolts and their joints are in vault coordinates.
+    """
 
     schema_version: int
     name: str
@@ -286,20 +363,34 @@ class Gridshell:
     ground: float
     shells: tuple[Shell, ...]
     blades: tuple[Blade, ...] = ()
+    bolts: tuple[Bolt, ...] = ()
     joints: tuple[Joint, ...] = field(default=())
 
 
-Part: TypeAlias = Plank | Stud | CouplingBlock | Bolt | Screw | Strip | Mullion | Shoe | Footing | Blade
+FlatBar: TypeAlias = Plank | Mullion | ClampingBar | Strap
+Part: TypeAlias = (
+    Plank | Stud | CouplingBlock | Bolt | Screw | Strap | Shoe | Rod | Footing | Mullion | Strip | ClampingBar | Blade
+)
 
 
 def shell_parts(shell: Shell) -> tuple[Part, ...]:
     """Return every part of a shell, in the order of its fields; beams are assemblies of planks and not parts."""
     return (
-        *shell.planks, *shell.studs, *shell.blocks, *shell.bolts, *shell.screws,
-        *shell.strips, *shell.mullions, *shell.shoes, *shell.footings,
+        *shell.planks, *shell.studs, *shell.blocks, *shell.bolts, *shell.screws, *shell.straps, *shell.shoes,
+        *shell.rods, *shell.footings, *shell.mullions, *shell.strips, *shell.clamps,
     )  # fmt: skip
 
 
+def ridge_parts(gridshell: Gridshell) -> tuple[Part, ...]:
+    """Return the parts between the shells, in vault coordinates: blades and their bolts."""
+    return (*gridshell.blades, *gridshell.bolts)
+
+
 def all_parts(gridshell: Gridshell) -> tuple[Part, ...]:
-    """Return every part of the gridshell, shell by shell, then the blades."""
-    return (*(part for shell in gridshell.shells for part in shell_parts(shell)), *gridshell.blades)
+    """Return every part of the gridshell, shell by shell, then those between the shells."""
+    return (*(part for shell in gridshell.shells for part in shell_parts(shell)), *ridge_parts(gridshell))
+
+
+def all_joints(gridshell: Gridshell) -> tuple[Joint, ...]:
+    """Return every joint, shell by shell, then those between the shells."""
+    return (*(joint for shell in gridshell.shells for joint in shell.joints), *gridshell.joints)

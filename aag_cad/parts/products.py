@@ -8,24 +8,28 @@ from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import (
     Blade,
     Bolt,
+    ClampingBar,
     CouplingBlock,
     Footing,
     Frame,
     Mullion,
     Part,
     Plank,
+    Rod,
     Screw,
     Shoe,
+    Strap,
     Strip,
     Stud,
 )
 
 _OWN_TO_THE_PIECE = {"mark", "beam", "joints", "frame", "joint"}
+_FRAMED = Stud | CouplingBlock | Bolt | Screw | Shoe | Rod | Footing | Blade
 
 
 def part_frame(part: Part) -> Frame | None:
     """Return the frame that a product is placed by, or None if it is drawn in the coordinates of its shell."""
-    return part.frame if isinstance(part, Stud | CouplingBlock | Bolt | Screw | Shoe | Footing | Blade) else None
+    return part.frame if isinstance(part, _FRAMED) else None
 
 
 def _feed(value: object) -> str:
@@ -64,9 +68,16 @@ def product_name(part: Part) -> str:
             return f"Strip {mark.index:02d}"
         case Mullion():
             return f"Mullion {mark.index:02d}"
+        case ClampingBar():
+            return f"Clamping bar {mark.index:02d}"
+        case Strap():
+            section = part.blank.section
+            return f"Strap {part.blank.length:.0f} x {section.width:g} x {section.thickness:g}"
         case Shoe():
-            return f"Shoe {part.length:g} x {part.width:g}"
+            return f"Shoe {part.plate.width:g} x {part.plate.thickness:g}"
+        case Rod():
+            return f"Threaded rod M{part.diameter:g} x {part.length:g}"
         case Footing():
             return f"Concrete block {part.length:g} x {part.width:g} x {part.height:g}"
         case Blade():
-            return f"Ridge blade {part.length:g} x {part.height:g} x {part.thickness:g}"
+            return f"Ridge blade {part.plate.width:g} x {part.plate.thickness:g}"

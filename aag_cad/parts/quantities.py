@@ -6,7 +6,25 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from aag_cad.geometry.framed import Curvatures, curvatures_at
-from aag_cad.parts.model import Bolt, CouplingBlock, Part, Plank, Screw, Stud, Timber
+from aag_cad.parts.model import (
+    Blade,
+    Bolt,
+    ClampingBar,
+    CouplingBlock,
+    FlatBar,
+    Footing,
+    Mullion,
+    Part,
+    Plank,
+    Rod,
+    Screw,
+    Shoe,
+    Strap,
+    Strip,
+    Stud,
+    Timber,
+)
+from aag_cad.parts.plates import developed_length, plate_volume
 from aag_cad.units import MM3_PER_M3
 
 STEEL_DENSITY = 7850.0
@@ -14,7 +32,7 @@ STRAIGHT = 1e-9
 _STATIONS_PER_SAMPLE = 8
 _CHORDS = 64
 
-Material: TypeAlias = Literal["timber", "steel"]
+Material: TypeAlias = Literal["timber", "steel", "aluminium", "polycarbonate", "concrete"]
 
 
 _KINDS: dict[type[Part], tuple[str, Material]] = {
@@ -23,24 +41,31 @@ _KINDS: dict[type[Part], tuple[str, Material]] = {
     CouplingBlock: ("coupling block", "timber"),
     Bolt: ("bolt", "steel"),
     Screw: ("screw", "steel"),
+    Strap: ("strap", "steel"),
+    Shoe: ("shoe", "steel"),
+    Rod: ("threaded rod", "steel"),
+    Footing: ("concrete block", "concrete"),
+    Mullion: ("mullion", "aluminium"),
+    Strip: ("strip", "polycarbonate"),
+    ClampingBar: ("clamping bar", "aluminium"),
+    Blade: ("blade", "steel"),
+}
+# kg/m3; polycarbonate for 10 mm multiwall sheet of 1.7 kg/m2, concrete after EN 1991-1-1, table A.1.
+_DENSITIES: dict[Material, float] = {
+    "steel": STEEL_DENSITY,
+    "aluminium": 2700.0,
+    "polycarbonate": 170.0,
+    "concrete": 2400.0,
 }
 
 
-def _not_placed(part: Part) -> NotImplementedError:
-    return NotImplementedError(f"{part.mark}: parts of this kind are not placed yet")
-
-
 def kind(part: Part) -> str:
-    """Return the word for what a part is, as in the part lists; NotImplementedError for kinds not placed yet."""
-    if type(part) not in _KINDS:
-        raise _not_placed(part)
+    """Return the word for what a part is, as in the part lists."""
     return _KINDS[type(part)][0]
 
 
 def material(part: Part) -> Material:
-    """Return what a part is made of; NotImplementedError for kinds not placed yet."""
-    if type(part) not in _KINDS:
-        raise _not_placed(part)
+    """Return what a part is made of."""
     return _KINDS[type(part)][1]
 
 
@@ -52,27 +77,34 @@ def material_name(part: Part, timber: Timber) -> str:
 def hole_count(part: Part) -> int:
     """Return how many holes are drilled in a part."""
     match part:
-        case Plank():
+        case Plank() | Mullion() | ClampingBar() | Strap():
             return len(part.blank.holes)
         case Stud() | CouplingBlock():
             return len(part.holes)
+        case Shoe() | Blade():
+            return len(part.plate.holes)
         case _:
             return 0
 
 
 def sizes(part: Part) -> tuple[float, float, float]:
-    """Return (length, width, thickness) in mm; both are the distance across flats of a stud, the diameter of a bolt."""
+    """Return (length, width, thickness) in mm; both are the distance across flats of a stud, the diameter of a bolt.
+
+    Of a strip and of folded plates they are those of the flat pattern.
+    """
     match part:
-        case Plank():
+        case Plank() | Mullion() | ClampingBar() | Strap():
             return part.blank.length, part.blank.section.width, part.blank.section.thickness
         case Stud():
             return part.length, part.across_flats, part.across_flats
         case CouplingBlock():
             return part.length, part.width, part.thickness
-        case Bolt() | Screw():
+        case Bolt() | Screw() | Rod():
             return part.length, part.diameter, part.diameter
-        case _:
-            raise _not_placed(part)
+        case Footing():
+            return part.length, part.width, part.height
+        case Shoe() | Blade():
+            return developed_length(part.plate), part.plate.width, part.plate.thickness
 
 
 def hexagon_area(across_flats: float) -> float:
@@ -91,7 +123,7 @@ def section_area(part: Part) -> float:
     match part:
         case Stud():
             return hexagon_area(part.across_flats)
-        case Bolt() | Screw():
+        case Bolt() | Screw() | Rod():
             return circle_area(part.diameter)
         case _:
             return width * thickness
@@ -118,6 +150,10 @@ def gross_volume(part: Part) -> float:
     the section; end cuts turn about the ends of the centre line and so leave the volume alone.
     """
     length = sizes(part)[0]
+    if isinstance(part, Rod):
+        nut_and_washer = (hexagon_area(part.across_flats) - circle_area(part.diameter)) * part.nut_height
+        nut_and_washer += (circle_area(part.washer_diameter) - circle_area(part.diameter)) * part.washer_thickness
+        return circle_area(part.diameter) * part.length + 2.0 * nut_and_washer
     if isinstance(part, Bolt):
         hexagons = hexagon_area(part.across_flats) * (part.head_height + part.nut_height)
         washers = 2.0 * circle_area(part.washer_diameter) * part.washer_thickness
@@ -128,9 +164,13 @@ def gross_volume(part: Part) -> float:
 
 def volume(part: Part) -> float:
     """Return the volume less all holes, mm3; the holes of one part must not meet."""
+    if isinstance(part, Shoe | Blade):
+        return plate_volume(part.plate)
     match part:
-        case Plank():
-            bored = part.blank.section.thickness * sum(circle_area(hole.diameter) for hole in part.blank.holes)
+        case Plank() | Mullion() | ClampingBar() | Strap():
+            bored = part.blank.section.thickness * sum(
+                circle_area(hole.diameter) + hole.slot * hole.diameter for hole in part.blank.holes
+            )
         case CouplingBlock():
             bored = part.thickness * sum(circle_area(hole.diameter) for hole in part.holes)
         case Stud():
@@ -142,7 +182,8 @@ def volume(part: Part) -> float:
 
 def density(part: Part, timber: Timber) -> float:
     """Return the density of a part, kg/m3."""
-    return timber.density if material(part) == "timber" else STEEL_DENSITY
+    made_of = material(part)
+    return timber.density if made_of == "timber" else _DENSITIES[made_of]
 
 
 def mass(part: Part, timber: Timber) -> float:
@@ -150,15 +191,17 @@ def mass(part: Part, timber: Timber) -> float:
     return volume(part) * density(part, timber) / MM3_PER_M3
 
 
-def _curvatures(plank: Plank) -> Curvatures:
+def _curvatures(plank: FlatBar) -> Curvatures:
     count = _STATIONS_PER_SAMPLE * (len(plank.curve.stations) - 1) + 1
     return curvatures_at(plank.curve, np.linspace(0.0, plank.curve.length, count))
 
 
-def smallest_radius(plank: Plank) -> float:
-    """Return the smallest radius to which a plank is bent about its weak axis, mm; infinite if it stays straight."""
+def smallest_radius(plank: FlatBar) -> float:
+    """Return the smallest radius to which a plank or bar is bent about its weak axis, mm; infinite if it stays straight."""
     curvatures = _curvatures(plank)
-    bending = float(np.max(np.abs(curvatures.geodesic if plank.upright else curvatures.normal)))
+    bending = float(
+        np.max(np.abs(curvatures.geodesic if isinstance(plank, Plank) and plank.upright else curvatures.normal))
+    )
     return 1.0 / bending if bending > STRAIGHT else math.inf
 
 

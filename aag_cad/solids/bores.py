@@ -9,7 +9,7 @@ from scipy.linalg import circulant
 
 from aag_cad.errors import SolidError
 from aag_cad.geometry.surface import unit
-from aag_cad.parts.model import Hole, Plank
+from aag_cad.parts.model import FlatBar, Hole
 from aag_cad.solids import brep
 from aag_cad.solids.board import Bore
 from aag_cad.units import Floats
@@ -56,7 +56,7 @@ def require_inside(mark: str, hole: Hole, inside: bool) -> None:
         )
 
 
-def formed_bores(plank: Plank, edges: BSpline) -> list[Bore]:
+def formed_bores(plank: FlatBar, edges: BSpline) -> list[Bore]:
     """Return the holes of a formed plank whose long edges are a spline into (4, 3); SolidError if one breaks out.
 
     On each wide face the loop where the cylinder meets it is found by Newton's method; the rim is the circle at the

@@ -1,4 +1,4 @@
-"""Solids of studs, bolts, screws and coupling blocks in the coordinates of their frames."""
+"""Solids of studs, fasteners, coupling blocks, footings and folded plates in the coordinates of their frames."""
 
 import math
 
@@ -8,8 +8,10 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakePrism, BRe
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Vec
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Solid
 
-from aag_cad.parts.mesh import regular_polygon
-from aag_cad.parts.model import Bolt, CouplingBlock, CrossSection, Screw, Stud
+from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
+from aag_cad.parts.model import Bolt, CouplingBlock, CrossSection, FoldedPlate, Footing, Rod, Screw, Stud
+from aag_cad.parts.plates import hole_axes, plate_rings
+from aag_cad.parts.triangles import regular_polygon
 from aag_cad.solids.brep import the_solid
 from aag_cad.solids.planks import drilled_box
 
@@ -30,16 +32,29 @@ def stud_solid(stud: Stud) -> TopoDS_Solid:
 
 def bolt_solid(bolt: Bolt) -> TopoDS_Solid:
     """Return head, washers, shank and nut of a bolt as one solid; z = 0 is the outer face of the first plank."""
-    t, nut = bolt.washer_thickness, bolt.grip + bolt.washer_thickness
-    tip = max(bolt.length - t, nut + bolt.nut_height)
-    r, washer = bolt.diameter / 2.0, bolt.washer_diameter / 2.0
-    washers_and_shank = [
-        (0.0, -t), (washer, -t), (washer, 0.0), (r, 0.0),
-        (r, bolt.grip), (washer, bolt.grip), (washer, nut), (r, nut), (r, tip), (0.0, tip),
-    ]  # fmt: skip
-    shape = BRepAlgoAPI_Fuse(_turned(washers_and_shank), _hexagon(bolt.across_flats, -t - bolt.head_height, -t)).Shape()
-    shape = BRepAlgoAPI_Fuse(shape, _hexagon(bolt.across_flats, nut, nut + bolt.nut_height)).Shape()
-    return the_solid(shape, bolt.mark)
+    return the_solid(_threaded(bolt_pieces(bolt), bolt.diameter), bolt.mark)
+
+
+def rod_solid(rod: Rod) -> TopoDS_Solid:
+    """Return a threaded rod with its nuts and washers as one solid; z = 0 is its lower end."""
+    return the_solid(_threaded(rod_pieces(rod), rod.diameter), rod.mark)
+
+
+def _threaded(pieces: tuple[BoltPiece, ...], diameter: float) -> TopoDS_Shape:
+    """Return the pieces of a bolt as one shape: the round ones turned in one go, then the hexagons."""
+    profile = [(0.0, pieces[0].low)]
+    for piece in pieces:
+        radius = (diameter if piece.hexagonal else piece.size) / 2.0
+        if radius != profile[-1][0]:
+            profile.append((radius, piece.low))
+        else:
+            profile.pop()
+        profile.append((radius, piece.high))
+    shape = _turned([*profile, (0.0, pieces[-1].high)])
+    for piece in pieces:
+        if piece.hexagonal:
+            shape = BRepAlgoAPI_Fuse(shape, _hexagon(piece.size, piece.low, piece.high)).Shape()
+    return shape
 
 
 def screw_solid(screw: Screw) -> TopoDS_Solid:
@@ -54,6 +69,27 @@ def block_solid(block: CouplingBlock) -> TopoDS_Solid:
     """Return the coupling block, centred on its frame, with its holes along z; SolidError if one breaks out."""
     half, section = block.length / 2.0, CrossSection(block.width, block.thickness)
     return the_solid(drilled_box(-half, half, section, block.holes, block.mark), block.mark)
+
+
+def footing_solid(footing: Footing) -> TopoDS_Solid:
+    """Return the concrete block; z = 0 is its top."""
+    x, y = footing.length / 2.0, footing.width / 2.0
+    base = _outline([gp_Pnt(*corner, -footing.height) for corner in ((-x, -y), (x, -y), (x, y), (-x, y))])
+    return the_solid(BRepPrimAPI_MakePrism(base, gp_Vec(0.0, 0.0, footing.height)).Shape(), footing.mark)
+
+
+def folded_plate_solid(plate: FoldedPlate, mark: str) -> TopoDS_Solid:
+    """Return a folded plate with its holes; SolidError with the mark if it comes out invalid."""
+    rings = plate_rings(plate)
+    outline = [*rings[:, 0], *rings[::-1, 3]]
+    base = _outline([gp_Pnt(*corner.tolist()) for corner in outline])
+    shape = BRepPrimAPI_MakePrism(base, gp_Vec(0.0, plate.width, 0.0)).Shape()
+    reach = 2.0 * plate.thickness
+    for hole, centre, axis in zip(plate.holes, *hole_axes(plate), strict=True):
+        start = gp_Pnt(*(centre - reach / 2.0 * axis).tolist())
+        drill = BRepPrimAPI_MakeCylinder(gp_Ax2(start, gp_Dir(*axis.tolist())), hole.diameter / 2.0, reach).Shape()
+        shape = BRepAlgoAPI_Cut(shape, drill).Shape()
+    return the_solid(shape, mark)
 
 
 def _outline(points: list[gp_Pnt]) -> TopoDS_Face:

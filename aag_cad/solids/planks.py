@@ -7,7 +7,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from aag_cad.errors import SolidError
 from aag_cad.parts.forming import formed_points, plank_axes
-from aag_cad.parts.model import CrossSection, Hole, Plank
+from aag_cad.parts.model import CrossSection, FlatBar, Hole
 from aag_cad.solids import brep
 from aag_cad.solids.board import Bore, Skin, drilled_board
 from aag_cad.solids.bores import formed_bores, require_inside
@@ -16,8 +16,8 @@ from aag_cad.units import Floats
 _DEGREE = 5
 
 
-def formed_plank(plank: Plank) -> TopoDS_Solid:
-    """Return the bent, twisted and drilled plank in the coordinates of its shell; SolidError if it comes out invalid.
+def formed_plank(plank: FlatBar) -> TopoDS_Solid:
+    """Return the bent, twisted and drilled plank or bar in the coordinates of its shell; SolidError if it is invalid.
 
     Its long edges are quintic splines by the arc length of the centre line, its faces ruled between them; a hole is a
     cylinder along the local thickness direction, with circular rims.
@@ -34,7 +34,7 @@ def formed_plank(plank: Plank) -> TopoDS_Solid:
     return brep.checked(drilled_board(_formed_skin(plank, spline, corners), ends, bores), plank.mark)
 
 
-def straight_blank(plank: Plank) -> TopoDS_Solid:
+def straight_blank(plank: FlatBar) -> TopoDS_Solid:
     """Return the straight drilled blank in blank coordinates (x along it from its start); SolidError if invalid."""
     _require_square_ends(plank)
     blank = plank.blank
@@ -67,7 +67,7 @@ def drilled_box(start: float, end: float, section: CrossSection, holes: tuple[Ho
     return drilled_board(skin, ends, bores)
 
 
-def _require_square_ends(plank: Plank) -> None:
+def _require_square_ends(plank: FlatBar) -> None:
     for cut in (plank.blank.start_cut, plank.blank.end_cut):
         if cut.angle_deg != 90.0:
             raise SolidError(
@@ -84,7 +84,7 @@ def _sides(section: CrossSection) -> tuple[float, float, float, float]:
     return section.width, section.thickness, section.width, section.thickness
 
 
-def _corner_splines(plank: Plank) -> BSpline:
+def _corner_splines(plank: FlatBar) -> BSpline:
     """Return the four long edges as one spline into (4, 3) by the arc length of the centre line.
 
     They are interpolated at the samples of the centre line, so that their mean is the centre line itself.
@@ -94,7 +94,7 @@ def _corner_splines(plank: Plank) -> BSpline:
     return make_interp_spline(stations, formed_points(plank, blank).reshape(-1, 4, 3), k=_DEGREE)
 
 
-def _formed_skin(plank: Plank, spline: BSpline, corners: Floats) -> Skin:
+def _formed_skin(plank: FlatBar, spline: BSpline, corners: Floats) -> Skin:
     sides, poles = _sides(plank.blank.section), spline.c
     return Skin(
         corners=corners,

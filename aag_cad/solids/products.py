@@ -2,20 +2,43 @@
 
 from OCP.TopoDS import TopoDS_Solid
 
-from aag_cad.errors import SolidError
-from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Part, Plank, Screw, Stud, all_parts
+from aag_cad.parts.model import (
+    Blade,
+    Bolt,
+    ClampingBar,
+    CouplingBlock,
+    Footing,
+    Gridshell,
+    Mullion,
+    Part,
+    Plank,
+    Rod,
+    Screw,
+    Shoe,
+    Strap,
+    Stud,
+    all_parts,
+)
 from aag_cad.parts.products import product_key
-from aag_cad.solids.hardware import block_solid, bolt_solid, screw_solid, stud_solid
+from aag_cad.solids.hardware import (
+    block_solid,
+    bolt_solid,
+    folded_plate_solid,
+    footing_solid,
+    rod_solid,
+    screw_solid,
+    stud_solid,
+)
 from aag_cad.solids.planks import formed_plank
 
 
 def product_solid(part: Part) -> TopoDS_Solid:
     """Return a part's solid in product coordinates: those of its frame, or of its shell where it has none.
 
-    SolidError names the mark if the solid comes out invalid, or if there is none for parts of this kind.
+    SolidError names the mark if the solid comes out invalid.
     """
     match part:
-        case Plank():
+        case Plank() | Mullion() | ClampingBar() | Strap():
             return formed_plank(part)
         case Stud():
             return stud_solid(part)
@@ -25,8 +48,14 @@ def product_solid(part: Part) -> TopoDS_Solid:
             return bolt_solid(part)
         case Screw():
             return screw_solid(part)
+        case Rod():
+            return rod_solid(part)
+        case Footing():
+            return footing_solid(part)
+        case Shoe() | Blade():
+            return folded_plate_solid(part.plate, part.mark)
         case _:
-            raise SolidError(f"{part.mark}: there is no solid for parts of the kind {type(part).__name__}")
+            raise NotImplementedError(f"{part.mark}: parts of this kind are not placed yet")
 
 
 def product_solids(gridshell: Gridshell) -> dict[str, TopoDS_Solid]:
