@@ -8,6 +8,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from aag_cad.design import Design
+from aag_cad.mechanics.fastener_spacing import shortfalls
 from aag_cad.mechanics.lamella import LamellaStress, lamella_stress
 from aag_cad.parts.clash import clashes
 from aag_cad.parts.forming import formed_points
@@ -20,7 +21,6 @@ CONTACT = 1.0
 AXIS_TOLERANCE = 0.1
 ANGLE_SPAN_DEG = 1.0
 BOW = 1.0
-_ROUNDING = 0.05
 
 
 @dataclass(frozen=True)
@@ -77,31 +77,14 @@ def forming_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
                 yield Finding(code, severity, stress.mark, what, abs(value(stress)), abs(allowed), unit, remedy)
 
 
-def hole_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
-    """Yield AAG201 (hole to end) and AAG202 (hole to edge) after EN 1995-1-1, tables 8.4 (bolts) and 8.2 (screws).
+def hole_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG201 to AAG207: where holes, fasteners and washers miss EN 1995-1-1, tables 8.2 and 8.4, and 10.4.3.
 
-    Nearer than the unloaded distance (bolts a3,c = 4 d, a4,c = 3 d; screws 7 d, 3 d) is an error; nearer than the
-    loaded one (bolts a3,t = max(7 d, 80 mm), a4,t = 4 d; screws 12 d, 7 d) a warning.
+    AAG201 from the end, AAG202 from the edge, AAG203 from each other, AAG204 size of the hole, AAG205 in a coupling
+    block, AAG206 in a stud, AAG207 washers; planks alike are named once. See ``aag_cad.mechanics.fastener_spacing``.
     """
-    bolt, screw = design.joints.bolt_diameter, design.joints.screw_diameter
-    least = {"bolt": (4.0 * bolt, 3.0 * bolt), "screw": (7.0 * screw, 3.0 * screw)}
-    loaded = {"bolt": (max(7.0 * bolt, 80.0), 4.0 * bolt), "screw": (12.0 * screw, 7.0 * screw)}
-    for plank in _planks(gridshell):
-        blank = plank.blank
-        for use in ("bolt", "screw"):
-            holes = [hole for hole in blank.holes if hole.use == use]
-            if not holes:
-                continue
-            end = min(min(hole.station, blank.length - hole.station) for hole in holes)
-            edge = min(blank.section.width / 2.0 - abs(hole.offset) for hole in holes)
-            for code, what, found, i, remedy in (
-                ("AAG201", f"distance of a {use} hole from the end", end, 0, "lengthen the end or move the joint"),
-                ("AAG202", f"distance of a {use} hole from the edge", edge, 1, "move the hole inwards"),
-            ):
-                if found < least[use][i] - _ROUNDING:
-                    yield Finding(code, "error", plank.mark, what, found, least[use][i], "mm", remedy)
-                elif found < loaded[use][i] - _ROUNDING:
-                    yield Finding(code, "warning", plank.mark, f"{what} (loaded)", found, loaded[use][i], "mm", remedy)
+    for miss in shortfalls(gridshell):
+        yield Finding(miss.code, miss.severity, miss.mark, miss.what, miss.found, miss.required, "mm", miss.remedy)
 
 
 def end_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:

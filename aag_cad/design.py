@@ -17,9 +17,11 @@ from aag_cad.design_sections import (
     Optimise,
     Pattern,
     Project,
+    Ridge,
     Section,
     ShellsSection,
     SplineSurface,
+    Stock,
     Supports,
     SurfaceSection,
     Timber,
@@ -48,14 +50,23 @@ class Design(Section):
     joints: Joints
     boundary: Boundary
     facade: Facade
+    ridge: Ridge = Ridge()
     supports: Supports
     transport: Transport
     crew: Crew
+    stock: Stock = Stock()
     optimise: Optimise | None = None
 
     @model_validator(mode="after")
     def _fits_together(self) -> "Design":
-        rules = (*self._level_rules(), *self._shell_rules(), *self._joint_rules(), *self._boundary_rules())
+        rules = (
+            *self._level_rules(),
+            *self._shell_rules(),
+            *self._joint_rules(),
+            *self._boundary_rules(),
+            *self._facade_rules(),
+            *self._stock_rules(),
+        )
         broken = [text for holds, text in rules if not holds]
         if broken:
             raise ValueError("\n".join(broken))
@@ -121,6 +132,15 @@ class Design(Section):
                 "run into each other; make it larger",
             ),
             (
+                self.joints.stud_hole == "round" or self.joints.slot_length > 0.0,
+                "joints.slot_length: 0 mm makes no slot; more than 0, or joints.stud_hole = 'round'",
+            ),
+            (
+                self.joints.bolt_hole + self.joints.stud_slot <= 3.0 * self.joints.bolt_diameter,
+                f"joints.slot_length: {self.joints.slot_length:g} mm makes a slot longer than its washer of 3 d "
+                f"(EN 1995-1-1, 10.4.3); at most {3.0 * self.joints.bolt_diameter - self.joints.bolt_hole:g}",
+            ),
+            (
                 self.timber.thickness < self.joints.screw_length < self.timber.thickness + self.timber.width,
                 f"joints.screw_length: {self.joints.screw_length:g} mm does not end inside the coupling block; "
                 f"allowed {self.timber.thickness:g} to {self.timber.thickness + self.timber.width:g}",
@@ -148,6 +168,57 @@ class Design(Section):
                 self.boundary.ridge_setback >= self.timber.width / 2 + self.boundary.ridge_gap,
                 f"boundary.ridge_setback: {self.boundary.ridge_setback:g} mm leaves no room for half a plank "
                 f"and boundary.ridge_gap; at least {self.timber.width / 2 + self.boundary.ridge_gap:g}",
+            ),
+        )
+
+    def _stock_rules(self) -> Rules:
+        stock, thickness = self.stock, self.timber.thickness
+        needed = stock.planks_per_board * thickness + (stock.planks_per_board - 1) * stock.split_kerf
+        listed = {"lengths": stock.lengths, "bar_lengths": stock.bar_lengths, "metal_lengths": stock.metal_lengths}
+        return (
+            (
+                stock.board_thickness is None or stock.board_thickness >= needed,
+                f"stock.board_thickness: {stock.board_thickness or needed:g} mm does not give "
+                f"{stock.planks_per_board} planks of timber.thickness {thickness:g} mm; at least {needed:g}",
+            ),
+            *(
+                (
+                    min(lengths) > 2.0 * stock.trim,
+                    f"stock.{key}: nothing is left of {min(lengths):g} mm after stock.trim {stock.trim:g} mm at each "
+                    f"end; more than {2.0 * stock.trim:g}",
+                )
+                for key, lengths in listed.items()
+            ),
+        )
+
+    def _facade_rules(self) -> Rules:
+        facade = self.facade
+        if not facade.cover:
+            return ()
+        bar, free = facade.build_up, self.timber.width / 2 - self.joints.bolt_offset - self.joints.bolt_hole / 2
+        return (
+            (
+                bar < facade.screw_length < bar + free,
+                f"facade.screw_length: {facade.screw_length:g} mm does not end between the face of the coupling block "
+                f"and the bolt across it; allowed {bar:g} to {bar + free:g}, or facade.cover = false",
+            ),
+            *(
+                (
+                    thickness < width,
+                    f"facade.{name}: {thickness:g} mm is not less than the width {width:g} mm; give [width, thickness]",
+                )
+                for name, (width, thickness) in (("mullion", facade.mullion), ("clamp", facade.clamp))
+            ),
+            (
+                facade.screw_hole / 2 <= facade.edge_gap < min(facade.mullion[0], facade.clamp[0]) / 2,
+                f"facade.edge_gap: {facade.edge_gap:g} mm; more than half of facade.screw_hole "
+                f"({facade.screw_hole / 2:g}), or the screws hit the sheets, and less than half the width of mullion "
+                f"and clamp ({min(facade.mullion[0], facade.clamp[0]) / 2:g}), or these do not hold them",
+            ),
+            (
+                facade.screw_diameter <= facade.screw_hole,
+                f"facade.screw_hole: {facade.screw_hole:g} mm is narrower than facade.screw_diameter "
+                f"{facade.screw_diameter:g} mm",
             ),
         )
 

@@ -172,18 +172,25 @@ class Timber(Section):
 
 
 class Joints(Section):
-    """Gap, studs, bolts, screws and coupling blocks."""
+    """Gap, studs, bolts, screws and coupling blocks: the hole patterns of EN 1995-1-1, tables 8.2 and 8.4."""
 
     gap: Positive
     stud_across_flats: Positive
     stud_length: Positive
     bolt_diameter: Literal[6, 8, 10, 12]
     bolt_hole: Positive
-    bolt_offset: NotNegative
+    bolt_offset: NotNegative = Field(description="of a bolt from the centre line; half the spacing in a stud")
+    stud_hole: Literal["round", "slot"] = Field("round", description="slots let AA nodes turn while deployed")
+    slot_length: NotNegative = Field(3.0, description="mm longer than round, along the plank, for stud_hole = 'slot'")
     screw_diameter: Positive
     screw_hole: Positive
     screw_length: Positive
     block_length: Positive
+
+    @property
+    def stud_slot(self) -> float:
+        """How much longer than round the holes of stud bolts are, mm."""
+        return self.slot_length if self.stud_hole == "slot" else 0.0
 
 
 class Boundary(Section):
@@ -197,17 +204,54 @@ class Boundary(Section):
 
 
 class Facade(Section):
-    """Polycarbonate sheets."""
+    """Polycarbonate sheets between aluminium bars on the geodesics, screwed to the coupling blocks."""
 
+    cover: Annotated[bool, Field(strict=True)] = Field(True, description="false leaves the gridshell uncovered")
     sheet_thickness: Positive
-    sheet_width: Positive
+    sheet_width: Positive = Field(description="of the stock sheets, across the ribs")
+    sheet_lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
+        (3000.0, 4000.0, 5000.0, 6000.0, 7000.0), description="of the stock sheets, along the ribs"
+    )
+    sheet_mass: Positive = Field(1.7, description="kg/m2")
+    edge_gap: Positive = Field(5.0, description="from the geodesic to the edge of a sheet: the screws pass there")
+    seal: NotNegative = Field(2.0, description="thickness of the tape under and over a sheet, which is not drawn")
+    ridge_clearance: NotNegative = Field(20.0, description="of sheets and bars from the ridge or mirror plane")
+    foot_clearance: Number = Field(20.0, description="of sheets and bars over the ground line of the surface")
+    mullion: tuple[Positive, Positive] = Field((50.0, 3.0), description="width and thickness of the bar under them")
+    clamp: tuple[Positive, Positive] = Field((50.0, 2.0), description="width and thickness of the clamping bar")
+    screw_diameter: Positive = 4.0
+    screw_hole: Positive = Field(5.0, description="in mullion and clamping bar")
+    screw_length: Positive = 45.0
+
+    @property
+    def build_up(self) -> float:
+        """Height of mullion, tapes, sheet and clamping bar over the beams, mm: what the screw passes, head flush."""
+        return self.mullion[1] + 2.0 * self.seal + self.sheet_thickness + self.clamp[1]
+
+
+class Ridge(Section):
+    """The steel that joins plank ends at the top: straps on the geodesics, folded blades between two shells."""
+
+    blades: Literal["geodesics", "equal"] = Field("geodesics", description="at the ends of the geodesics or equally")
+    blade_spacing: Positive = Field(600.0, description="mm along the ridge plank, for blades = 'equal'")
+    blade_width: Positive = Field(100.0, description="mm along the ridge")
+    blade_thickness: Positive = 5.0
+    strap_width: Positive = 50.0
+    strap_thickness: Positive = 3.0
 
 
 class Supports(Section):
-    """What stands under the foot of each geodesic."""
+    """What stands under the foot of each geodesic, and the loads that the blocks are checked for."""
 
     foot_height: Positive
     block_size: tuple[Positive, Positive, Positive]
+    adjustment: Positive = Field(20.0, description="mm that a shoe can be set up or down on its threaded rod")
+    shoe_width: Positive = 90.0
+    shoe_thickness: Positive = 8.0
+    rod_diameter: Literal[12, 16, 20] = 16
+    wind_suction: NotNegative = Field(0.5, description="kN/m2, characteristic, upwards over the plan area")
+    snow: NotNegative = Field(0.75, description="kN/m2, characteristic, on the plan area")
+    friction: Annotated[Number, Field(gt=0, le=1)] = Field(0.6, description="of the blocks on the ground")
 
 
 class Transport(Section):
@@ -224,6 +268,44 @@ class Crew(Section):
 
     people: Annotated[Count, Field(ge=1, le=40)]
     lift_limit: Positive = Field(description="kg per person")
+
+
+class Stock(Section):
+    """What the workshop buys timber, metal bars and sheets in, and how it saws them.
+
+    A board is cut to length first and then split into planks of one length; shorter twins are cut back afterwards.
+    """
+
+    lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
+        (4000.0, 5000.0, 6000.0, 7000.0), description="mm, of the boards that planks are cut from"
+    )
+    board_thickness: Positive | None = Field(
+        None, description="mm, as bought; without it, that of the planks of a board and the saw cuts between them"
+    )
+    planks_per_board: Annotated[Count, Field(ge=1, le=6)] = 2
+    kerf: NotNegative = Field(4.0, description="mm, of the cross-cut saw")
+    split_kerf: NotNegative = Field(1.0, description="mm, of the saw that splits boards into planks")
+    trim: NotNegative = Field(10.0, description="mm, cut off at each end of a board or bar")
+    finger_joint: bool = Field(False, description="whether planks longer than every board are finger-jointed")
+    finger_length: NotNegative = Field(15.0, description="mm, that the fingers of both pieces share")
+    finger_clearance: NotNegative = Field(60.0, description="mm, from the fingers to the rim of the nearest hole")
+    finger_spacing: Positive = Field(600.0, description="mm, from a finger joint to the next, a sibling's or an end")
+    offcuts: Annotated[str, StringConstraints(min_length=1)] | None = Field(
+        None, description="CSV file of old planks, used before boards; a relative path starts in the working folder"
+    )
+    accept_old_holes: bool = Field(False, description="whether an old hole may lie in a plank cut from an old one")
+    old_hole_clearance: NotNegative = Field(24.0, description="mm, from the rim of an old hole to that of a new one")
+    old_hole_tolerance: NotNegative = Field(0.3, description="mm, within which an old hole is used again as a new one")
+    bar_lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
+        (3000.0, 4000.0), description="mm, of the timber bars that studs and coupling blocks are cut from"
+    )
+    metal_lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
+        (6000.0,), description="mm, of aluminium and steel bars"
+    )
+    sheet_lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
+        (3000.0, 4000.0, 5000.0, 6000.0, 7000.0), description="mm, of facade sheets, along their ribs"
+    )
+    sheet_gap: NotNegative = Field(5.0, description="mm, between two strips cut from one sheet")
 
 
 class Optimise(Section):

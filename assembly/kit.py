@@ -8,19 +8,20 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from aag_cad.parts.assemblies import beam_of_parts
-from aag_cad.parts.model import Joint, Shell, shell_parts
+from aag_cad.parts.model import Joint, Part, Shell, shell_parts
 from assembly.errors import PlanError
 
-Group: TypeAlias = Literal["beams", "studs", "edges", "outside", "inside", "standing"]
+Group: TypeAlias = Literal["beams", "studs", "edges", "outside", "inside", "feet", "standing", "cover"]
 
 
 @dataclass(frozen=True)
 class Kit:
     """Marks of parts by what they are added with.
 
-    ``beams``: planks, blocks and block bolts by beam. ``studs``: bolts by stud. ``edges``: screws by edge plank.
-    ``outside`` and ``inside``: screws by geodesic, by the side that they are driven from. ``feet``: shoes and
-    footings. ``standing``: fasteners of the feet. ``cover``: mullions and strips.
+    ``beams``: planks, blocks and block bolts by beam. ``studs``: bolts by stud. ``edges``: screws, straps and the bolts
+    of straps by edge plank. ``outside`` and ``inside``: screws by geodesic, by the side that they are driven from.
+    ``feet``: footings, threaded rods and shoes. ``standing``: bolts of the shoes. ``cover``: mullions, strips, clamping
+    bars and their screws.
     """
 
     beams: dict[str, tuple[str, ...]]
@@ -60,16 +61,19 @@ def _homes(shell: Shell, block_beam: dict[str, str]) -> dict[tuple[Group, str], 
     """Return the fasteners by what they are added with: a group of the kit and the mark of a piece in it."""
     families = {plank.mark: plank.family for plank in shell.planks}
     bolts, studs = {bolt.mark for bolt in shell.bolts}, {stud.mark for stud in shell.studs}
-    outer = driven_from_outside(shell)
+    outer, rods = driven_from_outside(shell), {rod.mark for rod in shell.rods}
+    straps = {strap.mark for strap in shell.straps}
 
     def home(joint: Joint, fastener: str) -> tuple[Group, str] | None:
+        if joint.kind == "cover":
+            return "cover", ""
         hub = next((mark for mark in joint.members if mark in studs or mark in block_beam), "")
         if hub in studs:
             return "studs", hub
         if hub and fastener in bolts:
             return "beams", block_beam[hub]
         if joint.kind == "foot":
-            return "standing", ""
+            return ("feet" if fastener in rods else "standing"), ""
         flat = sorted((families[mark], mark) for mark in joint.members if families.get(mark) in ("E", "G"))
         if not flat:
             return None
@@ -78,11 +82,15 @@ def _homes(shell: Shell, block_beam: dict[str, str]) -> dict[tuple[Group, str], 
 
     homes: dict[tuple[Group, str], list[str]] = defaultdict(list)
     for joint in shell.joints:
-        for fastener in joint.fasteners:
+        for fastener in (*(mark for mark in joint.members if mark in straps), *joint.fasteners):
             found = home(joint, fastener)
             if found is not None:
                 homes[found].append(fastener)
     return homes
+
+
+def _marks(parts: Iterable[Part]) -> tuple[str, ...]:
+    return tuple(part.mark for part in parts)
 
 
 def shell_kit(shell: Shell) -> Kit:
@@ -108,9 +116,14 @@ def shell_kit(shell: Shell) -> Kit:
         lower_edges=tuple(mark for mark in edges if mark in footed),
         outside=group("outside", flat),
         inside=group("inside", flat),
-        feet=(*(footing.mark for footing in shell.footings), *(shoe.mark for shoe in shell.shoes)),
+        feet=(*_marks(shell.footings), *homes.get(("feet", ""), ()), *_marks(shell.shoes)),
         standing=tuple(homes.get(("standing", ""), ())),
-        cover=(*(mullion.mark for mullion in shell.mullions), *(strip.mark for strip in shell.strips)),
+        cover=(
+            *_marks(shell.mullions),
+            *_marks(shell.strips),
+            *_marks(shell.clamps),
+            *homes.get(("cover", ""), ()),
+        ),
     )
     _refuse_strays(shell, kit)
     return kit

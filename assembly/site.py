@@ -24,8 +24,7 @@ def _ridges(gridshell: Gridshell) -> Iterator[Work]:
     """Yield the joining of each pair of shells, with their blades and the fasteners of these."""
     before: tuple[str, ...] = ()
     for a, b in ridge_pairs(gridshell):
-        family = f"R{a[1:]}{b[1:]}"
-        blades = [blade.mark for blade in gridshell.blades if parse_mark(blade.mark).family == family]
+        blades = [blade.mark for blade in gridshell.blades if set(parse_mark(blade.mark).family[1:]) == {a[1:], b[1:]}]
         fasteners = [
             mark
             for joint in gridshell.joints

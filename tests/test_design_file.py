@@ -164,6 +164,8 @@ def test_a_bad_value_is_named_with_its_key_itself_and_what_is_allowed(key: str, 
         ("joints.screw_length", "12", "12 mm does not end inside the coupling block; allowed 12 to 112"),
         ("boundary.end_overhang", "151", "151 mm is more than boundary.max_overhang 150 mm"),
         ("boundary.ridge_setback", "59", "59 mm leaves no room for half a plank and boundary.ridge_gap; at least 60"),
+        ("stock.board_thickness", "24.9", "24.9 mm does not give 2 planks of timber.thickness 12 mm; at least 25"),
+        ("stock.lengths", "[4000.0, 20.0]", "nothing is left of 20 mm after stock.trim 10 mm at each end"),
     ],
 )
 def test_values_that_do_not_fit_together_are_named_with_both_figures(key: str, value: str, told: str) -> None:
@@ -219,6 +221,13 @@ def test_an_unknown_key_is_named_with_its_path() -> None:
     message = refusal(VAULT.replace("neck_radius = 5100.0", "neck_radius = 5100.0\nneck_raduis = 5000.0"))
     assert re.search(r"surface\S*\.neck_raduis: unknown key; remove it or check its spelling", message)
     assert "timber.colour: unknown key" in refusal(VAULT.replace('species = "ash"', 'species = "ash"\ncolour = "red"'))
+
+
+def test_a_design_without_a_table_for_the_stock_buys_the_usual_lengths() -> None:
+    """Designs written before there was such a table load as they did, whatever their planks are thick."""
+    older = VAULT.split("[stock]")[0]
+    assert parse_design(older).stock.lengths == (4000.0, 5000.0, 6000.0, 7000.0)
+    assert parse_design(older.replace("thickness = 12.0", "thickness = 20.0")).stock.planks_per_board == 2
 
 
 def test_an_unknown_table_is_named() -> None:
@@ -341,7 +350,7 @@ def test_a_section_is_accepted_exactly_if_it_can_be_built(
     text = changed(
         timber__width=repr(width), timber__thickness=repr(thickness), joints__gap=repr(gap),
         joints__stud_across_flats=repr(gap), joints__bolt_offset=repr(offset), joints__screw_length="60.0",
-        joints__stud_length="900.0", boundary__ridge_setback="200.0",
+        joints__stud_length="900.0", boundary__ridge_setback="200.0", stock__board_thickness="100.0",
     )  # fmt: skip
     fits = thickness < gap and thickness < width and 2.0 * offset + 9.0 < width and 2.0 * offset > 9.0
     fits = fits and thickness < 60.0 < thickness + width

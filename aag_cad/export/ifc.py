@@ -62,7 +62,7 @@ def _write_shell(
 def _write_vault(
     model: IfcModel, gridshell: Gridshell, storey: Entity, product_of: Mapping[str, Product]
 ) -> dict[str, Entity]:
-    """Write the vault with its shells and what joins them and return all elements by mark; only the vault is in the storey."""
+    """Write the vault, its shells and what joins them; return all elements by mark. Only the vault is in the storey."""
     origin = model.identity.Location
     unmoved = model.file.create_entity("IfcCartesianTransformationOperator3D", LocalOrigin=origin)
     vault = _assembly(model, _VAULT, gridshell.name, "Gridshell", "SITE", storey.ObjectPlacement)

@@ -1,7 +1,9 @@
 """The gridshell of a design and its network: all parts and joints of all shells."""
 
 import math
+import re
 from collections import defaultdict
+from collections.abc import Callable, Iterable
 from dataclasses import fields, is_dataclass, replace
 from typing import TypeVar
 
@@ -11,9 +13,13 @@ from aag_cad.design import Design
 from aag_cad.geometry.framed import FramedCurve, frames_at
 from aag_cad.geometry.patches import turn
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork
-from aag_cad.parts.joints import BuiltJoint, block_joint, end_joint, node_joint
+from aag_cad.parts.blades import BladeJoint, blade_joints, own_sides
+from aag_cad.parts.clearance import Obstacle, near_parts, obstacles
+from aag_cad.parts.feet import foot_joint
+from aag_cad.parts.joints import BuiltJoint, block_joint, node_joint
 from aag_cad.parts.marks import Mark
 from aag_cad.parts.members import (
+    Drilling,
     curve_mark,
     drilled,
     grouped,
@@ -24,20 +30,28 @@ from aag_cad.parts.members import (
 from aag_cad.parts.model import (
     SCHEMA_VERSION,
     Beam,
+    Blade,
     Bolt,
     CouplingBlock,
+    Footing,
     Frame,
     Gridshell,
     Joint,
+    Part,
     Plank,
+    Rod,
     Screw,
     Shell,
+    Shoe,
+    Strap,
     Stud,
     Timber,
 )
+from aag_cad.parts.straps import strap_joint
 from aag_cad.units import Floats, vector
 
 _T = TypeVar("_T")
+_BLADE_MARK = re.compile(r"R[1-9][1-9]-")
 
 
 def _numbered(network: CurveNetwork, shell: int) -> list[tuple[Mark, Crossing]]:
@@ -57,30 +71,40 @@ def _numbered(network: CurveNetwork, shell: int) -> list[tuple[Mark, Crossing]]:
     return marked
 
 
-def _built_joints(design: Design, marked: list[tuple[Mark, Crossing]], beams: dict[CurveId, Beam]) -> list[BuiltJoint]:
-    """Return all joints with their parts and drillings."""
+def _beam_joints(design: Design, marked: list[tuple[Mark, Crossing]], beams: dict[CurveId, Beam]) -> list[BuiltJoint]:
+    """Return all joints on beams with their parts and drillings."""
+    listed = [(mark, crossing) for mark, crossing in marked if crossing.kind in ("AA", "AG", "boundary")]
     places: dict[CurveId, list[tuple[int, Floats]]] = defaultdict(list)
-    for i, (_, crossing) in enumerate(marked):
+    for i, (_, crossing) in enumerate(listed):
         for curve in crossing.curves:
             if curve in beams:
                 lift = beams[curve].layer * design.layer_offset
                 places[curve].append((i, np.array(crossing.point) + lift * np.array(crossing.normal)))
     station = {
         (curve, i): float(s)
-        for curve, listed in places.items()
-        for (i, _), s in zip(listed, stations_of(beams[curve], np.array([p for _, p in listed])), strict=True)
+        for curve, at in places.items()
+        for (i, _), s in zip(at, stations_of(beams[curve], np.array([p for _, p in at])), strict=True)
     }
     built = []
-    for i, (mark, crossing) in enumerate(marked):
+    for i, (mark, crossing) in enumerate(listed):
         if crossing.kind == "AA":
             pair = [beams[curve] for curve in crossing.curves]
             built.append(node_joint(design, mark, crossing, pair, [station[c, i] for c in crossing.curves]))
-        elif crossing.kind in ("AG", "boundary"):
+        else:
             beam = crossing.curves[0]
             built.append(block_joint(design, mark, crossing, beams[beam], station[beam, i]))
-        else:
-            built.append(end_joint(mark, crossing))
     return built
+
+
+def _end_joints(
+    design: Design, network: CurveNetwork, marked: list[tuple[Mark, Crossing]], among: list[Obstacle]
+) -> list[BuiltJoint]:
+    """Return the joints at the ends of the flat planks: feet, and straps at the top."""
+    feet = [foot_joint(design, network, mark, crossing) for mark, crossing in marked if crossing.kind == "foot"]
+    straps = [
+        strap_joint(design, network, mark, crossing, among) for mark, crossing in marked if crossing.kind == "ridge"
+    ]
+    return [*feet, *straps]
 
 
 def _jointed(design: Design, plank: Plank, joints: list[Joint], beam: Beam | None) -> Plank:
@@ -101,50 +125,123 @@ def _on_beam(design: Design, beam: Beam, joints: list[Joint]) -> list[tuple[Floa
     return list(zip(frames.point, frames.binormal, strict=True))
 
 
-def _shell(design: Design, network: CurveNetwork) -> Shell:
-    """Return the first shell, S1."""
-    beams, planks = undrilled_members(design, 1, network)
-    by_curve = {item.id: beam for item in network.curves for beam in beams if beam.mark == curve_mark(1, item.id)}
-    built = _built_joints(design, _numbered(network, 1), by_curve)
-    joints = [b.joint for b in built]
-    parts = [part for b in built for part in b.parts]
-    drillings = grouped(d for b in built for d in b.drillings)
+def _with_holes(
+    design: Design, beams: list[Beam], planks: list[Plank], joints: list[Joint], drillings: list[Drilling]
+) -> tuple[list[Beam], list[Plank]]:
+    """Return beams and planks with the stations of their joints, the planks drilled."""
+    by_plank, by_mark = grouped(drillings), {beam.mark: beam for beam in beams}
     members: dict[str, list[Joint]] = defaultdict(list)
     for joint in joints:
         for mark in joint.members:
             members[mark].append(joint)
-    by_mark = {beam.mark: beam for beam in beams}
-    finished = [_jointed(design, drilled(p, drillings[p.mark]), members[p.mark], by_mark.get(p.beam)) for p in planks]
+    finished = [_jointed(design, drilled(p, by_plank[p.mark]), members[p.mark], by_mark.get(p.beam)) for p in planks]
     jointed_beams = []
     for beam in beams:
         on_beam = members[beam.planks[0]]
         places = _on_beam(design, beam, on_beam)
         points = [(joint.mark, point) for joint, (point, _) in zip(on_beam, places, strict=True)]
         jointed_beams.append(replace(beam, joints=with_joints(beam, points)))
+    return jointed_beams, finished
+
+
+def _of(kind: type[_T], parts: Iterable[object]) -> tuple[_T, ...]:
+    return tuple(part for part in parts if isinstance(part, kind))
+
+
+def _blades(design: Design, network: CurveNetwork, parts: list[Part]) -> list[BladeJoint]:
+    """Return the blades between the first shell and the second, clear of the parts of both."""
+    count = design.shells.count
+    if count == 1 or design.shells.top == "level":
+        return []
+    return blade_joints(design, network, [o for i in (0, 1) for o in obstacles(parts, _placement(i, count))])
+
+
+def _shell(design: Design, network: CurveNetwork) -> tuple[Shell, list[BladeJoint]]:
+    """Return the first shell, S1, and the blades between it and the second."""
+    beams, planks = undrilled_members(design, 1, network)
+    by_curve = {item.id: beam for item in network.curves for beam in beams if beam.mark == curve_mark(1, item.id)}
+    marked = _numbered(network, 1)
+    built = _beam_joints(design, marked, by_curve)
+    upper = [c.point for _, c in marked if c.kind == "ridge"]
+    among = obstacles([*planks, *near_parts((part for b in built for part in b.parts), upper)], _placement(0, 1))
+    built += _end_joints(design, network, marked, among)
+    parts = [part for b in built for part in b.parts]
+    blades = _blades(design, network, [*planks, *near_parts(parts, upper)])
+    joints = [b.joint for b in built]
+    drillings = [d for b in built for d in b.drillings]
+    for blade in blades:
+        ours, theirs = own_sides(design, blade)
+        joints_of_blade = [(ours, blade.left), (theirs, blade.right)]
+        joints += [joint for joint, _ in joints_of_blade]
+        drillings += [replace(d, joint=joint.mark) for joint, listed in joints_of_blade for d in listed]
+    beams, planks = _with_holes(design, beams, planks, joints, drillings)
     return Shell(
         mark="S1",
-        placement=Frame((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-        planks=tuple(finished),
-        beams=tuple(jointed_beams),
-        studs=tuple(p for p in parts if isinstance(p, Stud)),
-        blocks=tuple(p for p in parts if isinstance(p, CouplingBlock)),
-        bolts=tuple(p for p in parts if isinstance(p, Bolt)),
-        screws=tuple(p for p in parts if isinstance(p, Screw)),
-        joints=tuple(joints),
-    )
+        placement=_placement(0, 1),
+        planks=tuple(planks),
+        beams=tuple(beams),
+        studs=_of(Stud, parts),
+        blocks=_of(CouplingBlock, parts),
+        bolts=_of(Bolt, parts),
+        screws=_of(Screw, parts),
+        joints=tuple(b.joint for b in built),
+        straps=_of(Strap, parts),
+        shoes=_of(Shoe, parts),
+        rods=_of(Rod, parts),
+        footings=_of(Footing, parts),
+    ), blades
 
 
-def _renamed(value: _T, old: str, new: str) -> _T:
-    """Return plain data with the shell's mark exchanged in every mark; curves are shared, not copied."""
+def _renamed(value: _T, rename: Callable[[str], str]) -> _T:
+    """Return plain data with every text renamed; curves are shared, not copied."""
     if isinstance(value, str):
-        ours = value == old or value.startswith(f"{old}-")
-        return new + value[len(old) :] if ours else value  # type: ignore[return-value]
+        return rename(value)  # type: ignore[return-value]
     if isinstance(value, tuple):
-        return tuple(_renamed(item, old, new) for item in value)  # type: ignore[return-value]
+        return tuple(_renamed(item, rename) for item in value)  # type: ignore[return-value]
     if is_dataclass(value) and not isinstance(value, type | FramedCurve):
-        changed = {f.name: _renamed(getattr(value, f.name), old, new) for f in fields(value)}
+        changed = {f.name: _renamed(getattr(value, f.name), rename) for f in fields(value)}
         return replace(value, **changed)
     return value
+
+
+def _copy_of(value: _T, index: int, count: int) -> _T:
+    """Return what belongs to the first shell, and to the ridges beside it, as that of the shell ``index`` places on."""
+
+    def turned(number: int) -> int:
+        return (number - 1 + index) % count + 1
+
+    def rename(text: str) -> str:
+        if text == "S1" or text.startswith("S1-"):
+            return f"S{turned(1)}{text[2:]}"
+        if text.startswith("S2-"):
+            return f"S{turned(2)}{text[2:]}"
+        if _BLADE_MARK.match(text):
+            return f"R{turned(int(text[1]))}{turned(int(text[2]))}{text[3:]}"
+        return text
+
+    return _renamed(value, rename)
+
+
+def _turned(frame: Frame, placement: Frame) -> Frame:
+    """Return a frame turned with a shell about the centre."""
+    turning = np.column_stack([placement.x, placement.y, placement.z])
+    origin, x, y, z = (vector(turning @ np.array(v)) for v in (frame.origin, frame.x, frame.y, frame.z))
+    return Frame(origin, x, y, z)
+
+
+def _ridges(design: Design, blades: list[BladeJoint]) -> tuple[list[Blade], list[Bolt], list[Joint]]:
+    """Return blades, bolts and joints of every ridge."""
+    count = design.shells.count
+    all_blades, bolts, joints = [], [], []
+    for i in range(count):
+        placement = _placement(i, count)
+        for item in blades:
+            copy = _copy_of(item, i, count)
+            all_blades.append(replace(copy.blade, frame=_turned(copy.blade.frame, placement)))
+            bolts += [replace(bolt, frame=_turned(bolt.frame, placement)) for bolt in copy.bolts]
+            frame = all_blades[-1].frame
+            joints.append(replace(copy.joint, point=frame.origin, normal=frame.z))
+    return all_blades, bolts, joints
 
 
 def _placement(index: int, count: int) -> Frame:
@@ -154,9 +251,10 @@ def _placement(index: int, count: int) -> Frame:
 
 def gridshell_from(design: Design, network: CurveNetwork) -> Gridshell:
     """Return the whole gridshell: the shell of the network, repeated about the centre (paper sections 3.1 and 3.2)."""
-    first = _shell(design, network)
+    first, blade_joints_of_first = _shell(design, network)
     count = design.shells.count
-    shells = [replace(_renamed(first, "S1", f"S{i + 1}"), placement=_placement(i, count)) for i in range(count)]
+    shells = [replace(_copy_of(first, i, count), placement=_placement(i, count)) for i in range(count)]
+    blades, bolts, joints = _ridges(design, blade_joints_of_first)
     timber, strength = design.timber, design.timber.strength
     return Gridshell(
         schema_version=SCHEMA_VERSION,
@@ -175,4 +273,7 @@ def gridshell_from(design: Design, network: CurveNetwork) -> Gridshell:
         ),
         ground=design.bottom_height - design.supports.foot_height,
         shells=tuple(shells),
+        blades=tuple(blades),
+        bolts=tuple(bolts),
+        joints=tuple(joints),
     )

@@ -1,45 +1,29 @@
 """Where solids of different parts run into each other, and how deep."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
-from aag_cad.parts.forming import blank_points, formed_points
-from aag_cad.parts.mesh import frame_matrix, product_mesh
+from aag_cad.parts.depth import depths_in, surface_points
+from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import (
-    Blade,
-    Bolt,
     ClampingBar,
-    CouplingBlock,
-    Footing,
     Frame,
     Gridshell,
     Mullion,
     Part,
     Plank,
-    Rod,
-    Screw,
-    Shoe,
-    Strap,
     Strip,
-    Stud,
     all_joints,
     ridge_parts,
     shell_parts,
 )
-from aag_cad.parts.plates import leg_points, plate_depth
 from aag_cad.parts.products import part_frame, product_key
 from aag_cad.units import Floats, Vector, vector
 
-_BARS = Plank | Mullion | ClampingBar | Strap
-_FACE_SPACING = 12.0
-_EDGE_SPACING = 4.0
 _STRETCH = 250.0
-
-
 _BETWEEN = -1
 _VAULT = Frame((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -73,80 +57,6 @@ class _Body:
     matrix: Floats
 
 
-def _grid(length: float, spacing: float) -> Floats:
-    return np.linspace(-length / 2.0, length / 2.0, max(2, int(np.ceil(length / spacing)) + 1))
-
-
-def _box_points(length: float, width: float, thickness: float) -> Floats:
-    """Return points on the surface of a box about the origin, closer along its long edges."""
-    x, y, z = _grid(length, _FACE_SPACING), _grid(width, _FACE_SPACING), _grid(thickness, _FACE_SPACING)
-    faces = [
-        np.stack(np.meshgrid(x, y, z[[0, -1]], indexing="ij"), axis=-1).reshape(-1, 3),
-        np.stack(np.meshgrid(x, y[[0, -1]], z, indexing="ij"), axis=-1).reshape(-1, 3),
-        np.stack(np.meshgrid(x[[0, -1]], y, z, indexing="ij"), axis=-1).reshape(-1, 3),
-        np.stack(np.meshgrid(_grid(length, _EDGE_SPACING), y[[0, -1]], z[[0, -1]], indexing="ij"), axis=-1).reshape(
-            -1, 3
-        ),
-    ]
-    return np.concatenate(faces)
-
-
-def _surface_points(part: Part) -> Floats:
-    """Return points on the surface of a part in product coordinates, (n, 3)."""
-    if isinstance(part, _BARS):
-        section = part.blank.section
-        points = _box_points(part.blank.length, section.width, section.thickness)
-        return formed_points(part, points + np.array([part.blank.length / 2.0, 0.0, 0.0]))
-    if isinstance(part, CouplingBlock):
-        return _box_points(part.length, part.width, part.thickness)
-    if isinstance(part, Footing):
-        return _box_points(part.length, part.width, part.height) - np.array([0.0, 0.0, part.height / 2.0])
-    if isinstance(part, Shoe | Blade):
-        return leg_points(part.plate, _EDGE_SPACING)
-    mesh = product_mesh(part)
-    low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
-    ring = mesh.vertices[np.isclose(mesh.vertices[:, 2], low)]
-    heights = np.linspace(low, high, max(2, int((high - low) / _FACE_SPACING) + 1))
-    walls = np.concatenate([ring[:, :2]] * len(heights))
-    return np.concatenate([np.column_stack([walls, np.repeat(heights, len(ring))]), mesh.vertices])
-
-
-def _threaded_depth(pieces: Iterable[BoltPiece], points: Floats) -> Floats:
-    radius, height = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
-    depths = [np.minimum.reduce([p.size / 2.0 - radius, height - p.low, p.high - height]) for p in pieces]
-    return np.asarray(np.maximum.reduce(depths))
-
-
-def _depth(part: Part, points: Floats) -> Floats:
-    """Return how deep points (n, 3) in product coordinates lie inside a part, mm, (n,); negative outside."""
-    if isinstance(part, _BARS):
-        x, y, z = blank_points(part, points).T
-        half_width, half_thickness = part.blank.section.width / 2.0, part.blank.section.thickness / 2.0
-        sides = [x, part.blank.length - x, half_width - np.abs(y), half_thickness - np.abs(z)]
-        return np.asarray(np.minimum.reduce(sides))
-    if isinstance(part, CouplingBlock):
-        size = np.array([part.length, part.width, part.thickness]) / 2.0
-        return np.asarray((size - np.abs(points)).min(axis=1))
-    if isinstance(part, Stud):
-        angles = np.arange(6) * np.pi / 3.0
-        flats = points[:, :2] @ np.array([np.cos(angles), np.sin(angles)])
-        ends = part.length / 2.0 - np.abs(points[:, 2])
-        return np.asarray(np.minimum(part.across_flats / 2.0 - flats.max(axis=1), ends))
-    if isinstance(part, Bolt):
-        return _threaded_depth(bolt_pieces(part), points)
-    if isinstance(part, Rod):
-        return _threaded_depth(rod_pieces(part), points)
-    if isinstance(part, Shoe | Blade):
-        return plate_depth(part.plate, points)
-    if isinstance(part, Footing):
-        sides = [part.length / 2.0 - np.abs(points[:, 0]), part.width / 2.0 - np.abs(points[:, 1])]
-        return np.asarray(np.minimum.reduce([*sides, -points[:, 2], points[:, 2] + part.height]))
-    if isinstance(part, Screw):
-        inside = part.diameter / 2.0 - np.hypot(points[:, 0], points[:, 1])
-        return np.asarray(np.minimum.reduce([inside, points[:, 2], part.length - points[:, 2]]))
-    raise NotImplementedError(f"{part.mark}: parts of this kind are not placed yet")
-
-
 def _body(part: Part, shell: int, placement: Frame) -> _Body:
     matrix = frame_matrix(placement)
     if (frame := part_frame(part)) is not None:
@@ -163,7 +73,7 @@ def _pieces(index: int, body: _Body, groups: list[Floats]) -> Iterator[_Piece]:
 
 def _point_groups(part: Part) -> list[Floats]:
     """Return a part's surface points, those of a long part in stretches of about 250 mm so that boxes stay tight."""
-    points = _surface_points(part)
+    points = surface_points(part)
     if not isinstance(part, Plank | Mullion | ClampingBar | Strip):
         return [points]
     curve = part.left if isinstance(part, Strip) else part.curve
@@ -225,7 +135,7 @@ def clashes(gridshell: Gridshell, limit: float) -> list[Clash]:
     for index, groups in sorted(inside.items()):
         body, points = bodies[index], np.concatenate([group for _, group in groups])
         owners = np.repeat([owner for owner, _ in groups], [len(group) for _, group in groups])
-        depths = _depth(body.part, (points - body.matrix[:3, 3]) @ body.matrix[:3, :3])
+        depths = depths_in(body.part, (points - body.matrix[:3, 3]) @ body.matrix[:3, :3])
         for k in np.nonzero(depths > limit)[0]:
             pair = (min(index, int(owners[k])), max(index, int(owners[k])))
             if pair not in deepest or deepest[pair].depth < depths[k]:

@@ -1,4 +1,4 @@
-"""The joints of a shell: studs with their bolts, coupling blocks with bolt and screw, ends of geodesics."""
+"""The joints of beams: studs with their bolts, coupling blocks with bolt and screw."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from aag_cad.network.model import Crossing
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt, wood_screw
 from aag_cad.parts.marks import Mark
 from aag_cad.parts.members import Drilling, beam_axes, curve_mark
-from aag_cad.parts.model import Beam, Bolt, CouplingBlock, CrossHole, Frame, Hole, Joint, JointKind, Screw, Stud
+from aag_cad.parts.model import Beam, Bolt, CouplingBlock, CrossHole, Frame, Hole, Joint, Part, Stud
 from aag_cad.units import Floats, vector
 
 
@@ -19,14 +19,17 @@ class BuiltJoint:
     """A joint with the parts that it brings, and the axes on which planks are drilled for it."""
 
     joint: Joint
-    parts: tuple[Stud | CouplingBlock | Bolt | Screw, ...]
+    parts: tuple[Part, ...]
     drillings: tuple[Drilling, ...]
 
 
 def _beam_bolt(
-    design: Design, mark: str, joint: str, beam: Beam, station: float, offset: float
+    design: Design, mark: str, joint: str, beam: Beam, station: float, offset: float, slot: float = 0.0
 ) -> tuple[Bolt, tuple[Drilling, ...]]:
-    """Return a bolt across a beam at a station, ``offset`` along the normal, and the drillings of both planks."""
+    """Return a bolt across a beam at a station, ``offset`` along the normal, and the drillings of both planks.
+
+    ``slot`` is how much longer than round the holes are, along the planks.
+    """
     point, _tangent, across, normal = beam_axes(beam, station)
     centre = point + offset * normal
     grip = design.joints.gap + 2 * design.timber.thickness
@@ -41,6 +44,7 @@ def _beam_bolt(
             design.joints.bolt_hole,
             "bolt",
             joint,
+            slot,
         )
         for plank, sign in zip(beam.planks, (1.0, -1.0), strict=True)
     )
@@ -57,7 +61,10 @@ def _stud_direction(directions: list[Floats], normal: Floats) -> Floats:
 
 
 def node_joint(design: Design, mark: Mark, crossing: Crossing, beams: list[Beam], stations: list[float]) -> BuiltJoint:
-    """Return an AA node: one stud along the normal through both gaps, two bolts through each beam and the stud."""
+    """Return an AA node: one stud along the normal through both gaps, two bolts through each beam and the stud.
+
+    The planks' holes are slots if the design asks for them, so that the node can turn while the web is deployed.
+    """
     point, normal = np.array(crossing.point), np.array(crossing.normal)
     across = [beam_axes(beam, station)[2] for beam, station in zip(beams, stations, strict=True)]
     frame = axis_frame(point, normal, _stud_direction(across, normal))
@@ -66,7 +73,9 @@ def node_joint(design: Design, mark: Mark, crossing: Crossing, beams: list[Beam]
     holes: list[CrossHole] = []
     for beam, station, direction in zip(beams, stations, across, strict=True):
         for offset in (-design.joints.bolt_offset, design.joints.bolt_offset):
-            bolt, drilled = _beam_bolt(design, f"{mark}-B{len(bolts) + 1}", str(mark), beam, station, offset)
+            bolt, drilled = _beam_bolt(
+                design, f"{mark}-B{len(bolts) + 1}", str(mark), beam, station, offset, design.joints.stud_slot
+            )
             bolts.append(bolt)
             drillings += drilled
             angle = float(np.arctan2(direction @ np.array(frame.y), direction @ np.array(frame.x)))
@@ -117,10 +126,3 @@ def block_joint(design: Design, mark: Mark, crossing: Crossing, beam: Beam, stat
         (bolt.mark, screw.mark),
     )
     return BuiltJoint(joint, (block, bolt, screw), (*drillings, drilling))
-
-
-def end_joint(mark: Mark, crossing: Crossing) -> BuiltJoint:
-    """Return the joint at the end of a flat plank: at the bottom plank (foot) or at a ridge plank (ridge)."""
-    members = tuple(curve_mark(mark.shell, curve) for curve in crossing.curves)
-    kind: JointKind = "foot" if crossing.kind == "foot" else "ridge"
-    return BuiltJoint(Joint(str(mark), kind, crossing.point, crossing.normal, members, ()), (), ())

@@ -19,7 +19,7 @@ LAYER = {"A1": -1, "G": 0, "E": 0, "A2": 1}
 
 @dataclass(frozen=True)
 class Drilling:
-    """An axis that a plank is drilled on: near the plank, in shell coordinates."""
+    """An axis that a plank is drilled on: near the plank, in shell coordinates; ``slot`` as in ``Hole``."""
 
     plank: str
     origin: Vector
@@ -27,6 +27,7 @@ class Drilling:
     diameter: float
     use: HoleUse
     joint: str
+    slot: float = 0.0
 
 
 def curve_mark(shell: int, curve: CurveId) -> str:
@@ -82,7 +83,9 @@ def drilled(plank: Plank, drillings: Iterable[Drilling]) -> Plank:
     if not wanted:
         return plank
     places = axis_piercings(plank, np.array([d.origin for d in wanted]), np.array([d.direction for d in wanted]))
-    holes = [Hole(float(x), float(y), d.diameter, d.use, d.joint) for (x, y), d in zip(places, wanted, strict=True)]
+    holes = [
+        Hole(float(x), float(y), d.diameter, d.use, d.joint, d.slot) for (x, y), d in zip(places, wanted, strict=True)
+    ]
     ordered = tuple(sorted(holes, key=lambda hole: (hole.station, hole.offset)))
     return replace(plank, blank=replace(plank.blank, holes=ordered))
 

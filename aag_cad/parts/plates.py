@@ -1,6 +1,7 @@
 """Folded steel plates: their mesh, volume, holes and depth in the coordinates of their frame."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -75,14 +76,16 @@ def plate_depth(plate: FoldedPlate, points: Floats) -> Floats:
 
 
 def leg_points(plate: FoldedPlate, spacing: float) -> Floats:
-    """Return points on the surface of the plate (n, 3), about every ``spacing`` mm."""
+    """Return points on both faces of the plate and midway between them, about every ``spacing`` mm, (n, 3)."""
     rings = plate_rings(plate)
     points = []
-    for first, last in zip(rings[:-1], rings[1:], strict=True):
+    for first, last in pairwise(rings):
         size = np.linalg.norm(last.mean(axis=0) - first.mean(axis=0))
         u = np.linspace(0.0, 1.0, max(2, int(np.ceil(size / spacing)) + 1))[:, None, None]
         ring = (1.0 - u) * first + u * last
         v = np.linspace(0.0, 1.0, max(2, int(np.ceil(plate.width / spacing)) + 1))[:, None]
-        for j, k in ((0, 1), (3, 2)):
-            points.append((ring[:, j, None] + v * (ring[:, k] - ring[:, j])[:, None]).reshape(-1, 3))
+        left, right = (ring[:, 0], ring[:, 3]), (ring[:, 1], ring[:, 2])
+        for share in (0.0, 0.5, 1.0):
+            a, b = ((1.0 - share) * side[0] + share * side[1] for side in (left, right))
+            points.append((a[:, None] + v * (b - a)[:, None]).reshape(-1, 3))
     return np.concatenate(points)

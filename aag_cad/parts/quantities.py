@@ -197,7 +197,7 @@ def _curvatures(plank: FlatBar) -> Curvatures:
 
 
 def smallest_radius(plank: FlatBar) -> float:
-    """Return the smallest radius to which a plank or bar is bent about its weak axis, mm; infinite if it stays straight."""
+    """Return the smallest radius to which a plank or bar is bent about its weak axis, mm; infinite if straight."""
     curvatures = _curvatures(plank)
     bending = float(
         np.max(np.abs(curvatures.geodesic if isinstance(plank, Plank) and plank.upright else curvatures.normal))

@@ -22,8 +22,14 @@ STACK_LIMIT = 3
 _SLACK = 1e-9
 _CELL = 1.0
 
-Laid: TypeAlias = Literal["as drawn", "end for end", "turned over", "end for end and turned over"]
+Laid: TypeAlias = Literal["as is", "turned end for end", "turned over", "turned end for end and over"]
 LAID: tuple[Laid, ...] = get_args(Laid)
+HOW_TO_LAY: dict[Laid, str] = {
+    "as is": "start at START, drawn face up",
+    "turned end for end": "start at END, drawn face up",
+    "turned over": "start at START, drawn face down",
+    "turned end for end and over": "start at END, drawn face down",
+}
 
 
 @dataclass(frozen=True)
@@ -69,12 +75,13 @@ def template_mark(number: int) -> str:
 
 
 def laid_points(points: Floats, length: float, laid: Laid) -> Floats:
-    """Return blank coordinates (n, 2) of a plank as they lie under the template, or back again: each is its own inverse.
+    """Return blank coordinates (n, 2) of a plank as they lie under the template, or the way back.
 
-    End for end is half a turn in the plane of the template; over is half a turn about the length.
+    End for end is half a turn in the plane of the template, over is half a turn about the length; every one of the four
+    ways is its own inverse.
     """
-    turned = laid in ("end for end", "end for end and turned over")
-    over = laid in ("turned over", "end for end and turned over")
+    turned = laid in ("turned end for end", "turned end for end and over")
+    over = laid in ("turned over", "turned end for end and over")
     station = length - points[:, 0] if turned else points[:, 0]
     return np.column_stack([station, -points[:, 1] if turned != over else points[:, 1]])
 
@@ -91,17 +98,19 @@ def _ends(blank: Blank, laid: Laid) -> Floats:
     """Return how far the cuts at the start and at the end of the template reach along the plank, (2,) mm."""
     start, end = cut_slope(blank.start_cut), cut_slope(blank.end_cut)
     slopes = {
-        "as drawn": (start, end),
-        "end for end": (end, start),
+        "as is": (start, end),
+        "turned end for end": (end, start),
         "turned over": (-start, -end),
-        "end for end and turned over": (-end, -start),
+        "turned end for end and over": (-end, -start),
     }[laid]
     return np.array(slopes) * blank.section.width / 2.0
 
 
 def _hole_figures(blank: Blank, laid: Laid) -> Floats:
     """Return station and offset under the template, diameter and slot of all holes, (n, 4)."""
-    figures = np.array([(h.station, h.offset, h.diameter, h.slot) for h in blank.holes], dtype=np.float64).reshape(-1, 4)
+    figures = np.array([(h.station, h.offset, h.diameter, h.slot) for h in blank.holes], dtype=np.float64).reshape(
+        -1, 4
+    )
     return np.column_stack([laid_points(figures[:, :2], blank.length, laid), figures[:, 2:]])
 
 
@@ -120,9 +129,9 @@ def _paired(fits: Floats) -> tuple[int, ...] | None:
 def _laid_as(master: Blank, blank: Blank, laid: Laid) -> tuple[int, ...] | None:
     """Return the holes of a blank in the order of the master's if it equals the master when so laid, else None."""
     reach = TOLERANCE + _SLACK
-    if np.any(np.abs(_ends(master, "as drawn") - _ends(blank, laid)) > reach):
+    if np.any(np.abs(_ends(master, "as is") - _ends(blank, laid)) > reach):
         return None
-    gaps = np.abs(_hole_figures(master, "as drawn")[:, None] - _hole_figures(blank, laid)[None])
+    gaps = np.abs(_hole_figures(master, "as is")[:, None] - _hole_figures(blank, laid)[None])
     same_use = np.array([[a.use == b.use for b in blank.holes] for a in master.holes], dtype=bool)
     return _paired(np.all(gaps <= reach, axis=2) & same_use.reshape(gaps.shape[:2]))
 
@@ -157,19 +166,19 @@ def drill_groups(planks: Iterable[Plank], stack_limit: int = STACK_LIMIT) -> tup
     if stack_limit < 1:
         raise DesignError(f"stack_limit: {stack_limit} planks cannot be clamped and drilled; give 1 or more")
     drafts: list[_Draft] = []
-    cells: dict[tuple[int, int], list[_Draft]] = {}
+    cells: dict[tuple[int, int], list[int]] = {}
     for plank in sorted(planks, key=_shop_order):
         count, length = len(plank.blank.holes), plank.blank.length
         # A master within the tolerance lies in the cell of its own length or over the border of it.
         near = {math.floor((length + gap) / _CELL) for gap in (-2.0 * TOLERANCE, 0.0, 2.0 * TOLERANCE)}
-        found = [(draft, member_of(draft.master, plank)) for i in sorted(near) for draft in cells.get((count, i), ())]
-        for draft, member in found:
+        for number in sorted(i for cell in near for i in cells.get((count, cell), ())):
+            member = member_of(drafts[number].master, plank)
             if member is not None:
-                draft.members.append(member)
+                drafts[number].members.append(member)
                 break
         else:
-            drafts.append(_Draft(plank, [Member(plank.mark, "as drawn", tuple(range(count)))]))
-            cells.setdefault((count, math.floor(length / _CELL)), []).append(drafts[-1])
+            cells.setdefault((count, math.floor(length / _CELL)), []).append(len(drafts))
+            drafts.append(_Draft(plank, [Member(plank.mark, "as is", tuple(range(count)))]))
     return tuple(
         DrillGroup(template_mark(number), draft.master, tuple(draft.members), stack_limit)
         for number, draft in enumerate(drafts, start=1)
@@ -179,6 +188,11 @@ def drill_groups(planks: Iterable[Plank], stack_limit: int = STACK_LIMIT) -> tup
 def all_planks(gridshell: Gridshell) -> tuple[Plank, ...]:
     """Return the planks of all shells."""
     return tuple(plank for shell in gridshell.shells for plank in shell.planks)
+
+
+def drawn_face(plank: Plank) -> str:
+    """Return which face of a blank its drawings show, and which edge is up."""
+    return "its right-hand face, outer edge up" if plank.upright else "its outer face, left edge up"
 
 
 def drilled_joints(group: DrillGroup, planks: Sequence[Plank]) -> tuple[tuple[str, ...], ...]:

@@ -1,0 +1,238 @@
+"""Reuse passports as files: JSON for programs, an A4 booklet for people, and reuse.csv as stock of the next design."""
+
+import csv
+import io
+import json
+import math
+import os
+import shutil
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import segno
+import typst
+
+from aag_cad.files import write_bytes, write_text
+from aag_cad.parts.marks import shell_of
+from aag_cad.parts.model import Gridshell, Hole, Plank, Timber
+from aag_cad.resources import template
+from aag_cad.shop.passports import (
+    REUSE_HEADER,
+    SERVICE_LIFE_YEARS,
+    Passport,
+    Strain,
+    passports,
+    reuse_row,
+    strain_along,
+)
+from aag_cad.units import MM_PER_M, Floats, deg_per_m
+
+PASSPORTS_VERSION = 1
+_DRAWING = 180.0
+_SCALES = (5, 10, 15, 20, 25, 30, 40, 50, 60, 75, 100, 150, 200, 250, 500)
+_ACROSS = 10.0
+_CHART = 10.0
+_CHART_SPACING = 100.0
+# Less twist than this is none: what is left of it comes from rounding.
+_NO_TWIST_DEG_PER_M = 0.01
+_SHARES = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 5.0)
+
+
+def write_passports(
+    gridshell: Gridshell,
+    json_path: str | os.PathLike[str],
+    pdf_path: str | os.PathLike[str],
+    csv_path: str | os.PathLike[str],
+    *,
+    service_life_years: float = SERVICE_LIFE_YEARS,
+) -> None:
+    """Write the passports of all planks as JSON, as PDF and as stock rows; equal gridshells give equal bytes.
+
+    DesignError if the service life is not above 0, FileError if a file cannot be written. The planned service life of
+    2 years is the paper's (section 5).
+    """
+    held = passports(gridshell, service_life_years=service_life_years)
+    write_text(json_path, passports_json(held, gridshell))
+    write_text(csv_path, reuse_csv(held))
+    write_bytes(pdf_path, passports_pdf(held, gridshell))
+
+
+def passports_json(held: Iterable[Passport], gridshell: Gridshell) -> str:
+    """Return the passports as JSON text, by mark, in mm; what a straight or untwisted plank has not is null."""
+    data = {
+        "schema_version": PASSPORTS_VERSION,
+        "design": gridshell.name,
+        "title": gridshell.title,
+        "planks": [_plain(passport) for passport in sorted(held, key=lambda each: each.mark)],
+    }
+    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _plain(held: Passport) -> dict[str, Any]:
+    bent = math.isfinite(held.smallest_radius)
+    twist = deg_per_m(held.largest_twist)
+    return {
+        "mark": held.mark,
+        "species": held.species,
+        "strength_class": held.strength_class,
+        "length_mm": round(held.length, 3),
+        "width_mm": held.section.width,
+        "thickness_mm": held.section.thickness,
+        "stock_origin": held.stock_origin,
+        "service_life_years": held.service_life_years,
+        "smallest_radius_mm": round(held.smallest_radius, 1) if bent else None,
+        "smallest_radius_at_mm": round(held.smallest_radius_station, 1) if bent else None,
+        "largest_twist_deg_per_m": round(twist, 3),
+        "largest_twist_at_mm": round(held.largest_twist_station, 1) if twist >= _NO_TWIST_DEG_PER_M else None,
+        "bending_n_mm2": round(held.bending_stress, 3),
+        "bending_utilisation": round(held.bending_utilisation, 4),
+        "shear_n_mm2": round(held.shear_stress, 3),
+        "shear_utilisation": round(held.shear_utilisation, 4),
+        "clear_stretches": [
+            {"from_mm": round(each.start, 3), "to_mm": round(each.end, 3), "length_mm": round(each.length, 3)}
+            for each in held.clear
+        ],
+        "holes": [
+            {
+                "station_mm": round(hole.station, 3),
+                "offset_mm": round(hole.offset, 3) + 0.0,
+                "diameter_mm": hole.diameter,
+                "slot_mm": hole.slot,
+                "use": hole.use,
+                "joint": hole.joint,
+            }
+            for hole in held.holes
+        ],
+    }
+
+
+def reuse_csv(held: Iterable[Passport]) -> str:
+    """Return the planks as stock for the next design: ``REUSE_HEADER``, then a line for each plank, LF."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(REUSE_HEADER)
+    writer.writerows(reuse_row(each) for each in sorted(held, key=lambda each: each.mark))
+    return out.getvalue()
+
+
+def passports_pdf(held: Iterable[Passport], gridshell: Gridshell) -> bytes:
+    """Return the passports as a booklet of A4 sheets; the same passports give the same bytes."""
+    planks = {plank.mark: plank for shell in gridshell.shells for plank in shell.planks}
+    ordered = sorted(held, key=lambda each: each.mark)
+    scale = _scale(max((each.length for each in ordered), default=0.0))
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        cards = [_card(each, planks[each.mark], gridshell.timber, scale, folder) for each in ordered]
+        data = {
+            "title": gridshell.title,
+            "radius": f"{gridshell.timber.min_bending_radius / MM_PER_M:g}\u00a0m",
+            "twist": f"{deg_per_m(gridshell.timber.max_twist):.3g}\u00a0°/m",
+            "scale": scale,
+            "across": _ACROSS,
+            "cards": cards,
+        }
+        (folder / "data.json").write_text(json.dumps(data, ensure_ascii=False), encoding="utf-8")
+        main = folder / "passports.typ"
+        shutil.copyfile(template("printouts", "passports.typ"), main)
+        pdf: bytes = typst.compile(str(main), root=str(folder), ignore_system_fonts=True, format="pdf")
+    return pdf
+
+
+def _scale(longest: float) -> int:
+    """Return the scale 1 : n at which the longest plank fits on the sheet, one for all sheets."""
+    return next((n for n in _SCALES if longest / n <= _DRAWING), math.ceil(longest / _DRAWING))
+
+
+def _card(held: Passport, plank: Plank, timber: Timber, scale: int, folder: Path) -> dict[str, Any]:
+    """Write the pictures of a passport to a folder and return what its card prints."""
+    strain = strain_along(plank, _CHART_SPACING)
+    shares = (strain.bending * timber.min_bending_radius, strain.twist / timber.max_twist)
+    most = max(float(abs(share).max()) for share in shares)
+    limit = next((share for share in _SHARES if most <= share), math.ceil(most))
+    (folder / f"{held.mark}.svg").write_text(_drawing(held, strain, shares, limit, scale), encoding="utf-8")
+    segno.make_qr(held.mark, error="m").save(str(folder / f"{held.mark}-qr.svg"), border=0, xmldecl=False)
+    return {
+        "mark": held.mark,
+        "facts": _facts(held),
+        "holes": _holes(held),
+        "length": held.length / scale,
+        "metres": [MM_PER_M / scale * metre for metre in range(1, int(held.length / MM_PER_M) + 1)],
+        "limit": f"±{100.0 * limit:.3g} %",
+        "height": held.section.width / _ACROSS,
+        "chart": _CHART,
+    }
+
+
+def _facts(held: Passport) -> list[tuple[str, str]]:
+    """Return the lines of a passport: what it is, what it carried, where it is clear."""
+    twist = deg_per_m(held.largest_twist)
+    twisted = f"{twist:.1f} °/m at {held.largest_twist_station:.0f} mm" if twist >= _NO_TWIST_DEG_PER_M else "nothing"
+    radius = f"{held.smallest_radius / MM_PER_M:.2f} m at {held.smallest_radius_station:.0f} mm"
+    clear = ", ".join(f"{each.start:.0f} to {each.end:.0f} ({each.length:.0f})" for each in held.clear[:3])
+    return [
+        (
+            "plank",
+            f"{held.species} {held.strength_class}, {held.section.thickness:g} x {held.section.width:g} mm, "
+            f"{held.length:.1f} mm long, {len(held.holes)} holes",
+        ),
+        ("cut from", held.stock_origin),
+        ("planned use", f"{held.service_life_years:g} years in {held.design}"),
+        ("bent to radius", radius if math.isfinite(held.smallest_radius) else "straight"),
+        ("twisted by", twisted),
+        ("bending", f"{held.bending_stress:.1f} N/mm², {held.bending_utilisation:.2f} of the strength"),
+        ("shear", f"{held.shear_stress:.1f} N/mm², {held.shear_utilisation:.2f} of the strength"),
+        ("longest clear", clear),
+    ]
+
+
+def _holes(held: Passport) -> list[dict[str, Any]]:
+    """Return the holes by joint, in the order of a tape along the plank."""
+    listed: list[dict[str, Any]] = []
+    shell = f"{shell_of(held.mark)}-"
+    for hole in held.holes:
+        joint = hole.joint.removeprefix(shell)
+        slot = f" x {hole.diameter + hole.slot:g}" if hole.slot else ""
+        bore = f"{hole.use} ⌀{hole.diameter:g}{slot}"
+        if not listed or (listed[-1]["joint"], listed[-1]["bore"]) != (joint, bore):
+            listed.append({"joint": joint, "bore": bore, "places": []})
+        offset = f"{round(hole.offset, 1) + 0.0:+.1f}".replace("-", "\N{MINUS SIGN}").replace("+0.0", "0")
+        listed[-1]["places"].append(f"{hole.station:.1f} {offset}")
+    return listed
+
+
+def _drawing(held: Passport, strain: Strain, shares: tuple[Floats, Floats], limit: float, scale: int) -> str:
+    """Return the blank with its holes and under it the chart of bending and twist, as SVG in mm of the sheet."""
+    width, high = held.section.width / _ACROSS, held.length / scale
+    top, zero = width + 1.5, width + 1.5 + _CHART / 2.0
+    bending, twist = (_CHART / 2.0 * share / limit for share in shares)
+    along = strain.stations / scale
+    area = f"M0 {zero:.3f}" + _path(along, zero - bending, "L") + f"L{high:.3f} {zero:.3f}Z"
+    bores = "".join(_bore(hole, width, scale) for hole in held.holes)
+    box = 'fill="none" stroke="#000" stroke-width="0.2"'
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{_DRAWING}mm" height="{top + _CHART:.3f}mm"'
+        f' viewBox="0 0 {_DRAWING} {top + _CHART:.3f}">'
+        f'<rect x="0.1" y="0.1" width="{high - 0.2:.3f}" height="{width - 0.2:.3f}" {box}/>{bores}'
+        f'<path d="{area}" fill="#c9c4b8" stroke="#6b665a" stroke-width="0.2"/>'
+        f'<path d="{_path(along, zero - twist, "M")}" fill="none" stroke="#12507b" stroke-width="0.35"/>'
+        f'<path d="M0 {zero:.3f}H{high:.3f}" stroke="#000" stroke-width="0.1"/>'
+        f'<rect x="0.05" y="{top:.3f}" width="{high - 0.1:.3f}" height="{_CHART - 0.1:.3f}" fill="none"'
+        ' stroke="#000" stroke-width="0.1"/></svg>\n'
+    )
+
+
+def _bore(hole: Hole, width: float, scale: int) -> str:
+    """Return a hole in the drawing of a blank; its round ends are to the scale across, to be seen at all."""
+    across = hole.diameter / _ACROSS
+    along = across + hole.slot / scale
+    return (
+        f'<rect x="{hole.station / scale - along / 2.0:.3f}" y="{(width - across) / 2.0 - hole.offset / _ACROSS:.3f}"'
+        f' width="{along:.3f}" height="{across:.3f}" rx="{across / 2.0:.3f}"/>'
+    )
+
+
+def _path(x: Floats, y: Floats, first: str) -> str:
+    points = [f"{a:.3f} {b:.3f}" for a, b in zip(x.tolist(), y.tolist(), strict=True)]
+    return first + "L".join(points)

@@ -1,0 +1,381 @@
+"""Minimum spacings and distances of fasteners in timber after EN 1995-1-1, and where a gridshell misses them.
+
+The audit turns what ``shortfalls`` yields into findings. Which force acts on a fastener, and at what angle to the
+grain, is not known from the shape: a distance below the least that the table asks at any angle is an error, one below
+the most that it asks a warning.
+"""
+
+import math
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Hole, HoleUse, Plank, Screw, all_joints, all_parts
+from aag_cad.units import Floats
+
+ROUNDING = 0.05
+HOLE_PLAY = 1.0
+WASHER_WIDTH, WASHER_THICKNESS = 3.0, 0.3
+_SCREW_AS_NAIL = 6.0
+_ALONG = 0.9
+_LENGTHEN = "lengthen the end, move the joint or prove the reduced distance"
+
+_JOINTS = {"N": "a stud", "K": "a block", "F": "a shoe", "R": "a strap", "V": "a cover"}
+
+Severity: TypeAlias = Literal["error", "warning", "note"]
+Diameters: TypeAlias = dict[tuple[str, HoleUse], float]
+
+
+@dataclass(frozen=True)
+class FastenerDistances:
+    """Spacings along (a1) and across the grain (a2), distances from loaded (t) and unloaded (c) ends and edges; mm."""
+
+    a1: float
+    a2: float
+    a3_t: float
+    a3_c: float
+    a4_t: float
+    a4_c: float
+
+
+@dataclass(frozen=True)
+class Shortfall:
+    """A distance that misses a clause: code, how bad, the part, what, found and required in mm, and the remedy."""
+
+    code: str
+    severity: Severity
+    mark: str
+    what: str
+    found: float
+    required: float
+    remedy: str
+
+
+def bolt_distances(diameter: float, angle: float) -> FastenerDistances:
+    """Return the distances for bolts, EN 1995-1-1, table 8.4; ``angle`` between force and grain, radians.
+
+    a3,t holds for forces towards the end, a3,c away from it, a4,t towards the edge, a4,c away from it.
+    """
+    cosine, sine = abs(math.cos(angle)), abs(math.sin(angle))
+    return FastenerDistances(
+        a1=(4.0 + cosine) * diameter,
+        a2=4.0 * diameter,
+        a3_t=max(7.0 * diameter, 80.0),
+        a3_c=max((1.0 + 6.0 * sine) * diameter, 4.0 * diameter),
+        a4_t=max((2.0 + 2.0 * sine) * diameter, 3.0 * diameter),
+        a4_c=3.0 * diameter,
+    )
+
+
+def screw_distances(diameter: float, angle: float) -> FastenerDistances:
+    """Return the distances for screws in pre-drilled holes; ``angle`` between force and grain, radians.
+
+    Up to 6 mm those of nails, EN 1995-1-1, table 8.2 (8.7.1(5)); thicker ones those of bolts (8.7.1(4)). Hardwood is
+    always pre-drilled (10.4.5).
+    """
+    if diameter > _SCREW_AS_NAIL:
+        return bolt_distances(diameter, angle)
+    cosine, sine = abs(math.cos(angle)), abs(math.sin(angle))
+    return FastenerDistances(
+        a1=(4.0 + cosine) * diameter,
+        a2=(3.0 + sine) * diameter,
+        a3_t=(7.0 + 5.0 * cosine) * diameter,
+        a3_c=7.0 * diameter,
+        a4_t=(3.0 + (2.0 if diameter < 5.0 else 4.0) * sine) * diameter,
+        a4_c=3.0 * diameter,
+    )
+
+
+def distances(use: HoleUse, diameter: float, angle: float) -> FastenerDistances:
+    """Return the distances for a bolt or a screw, by what its hole is for."""
+    return bolt_distances(diameter, angle) if use == "bolt" else screw_distances(diameter, angle)
+
+
+def table_of(use: HoleUse, diameter: float) -> str:
+    """Return the table of EN 1995-1-1 that holds for a bolt or a screw."""
+    return f"EN 1995-1-1, table {'8.4' if use == 'bolt' or diameter > _SCREW_AS_NAIL else '8.2'}"
+
+
+def slot_for_turn(turn: float, gap: float, thickness: float) -> float:
+    """Return how much longer than round a stud bolt's slot has to be for a node to turn by +-turn radians, mm.
+
+    The bolt leaves the plank at its outer face, gap / 2 + thickness from the stud's axis: there it travels that times
+    sin(turn) to either side. 24 mm gap and 12 mm planks: 24 mm sin(turn) a side.
+    """
+    return 2.0 * (gap / 2.0 + thickness) * math.sin(abs(turn))
+
+
+def _diameters(gridshell: Gridshell) -> Diameters:
+    """Return the largest diameter of the bolts and of the screws of each joint."""
+    fasteners = {part.mark: part for part in all_parts(gridshell) if isinstance(part, Bolt | Screw)}
+    found: Diameters = {}
+    for joint in all_joints(gridshell):
+        for mark in joint.fasteners:
+            if mark in fasteners:
+                use: HoleUse = "bolt" if isinstance(fasteners[mark], Bolt) else "screw"
+                found[joint.mark, use] = max(fasteners[mark].diameter, found.get((joint.mark, use), 0.0))
+    return found
+
+
+def _joint_word(hole: Hole) -> str:
+    """Return what a hole belongs to, for a carpenter."""
+    return _JOINTS.get(parse_mark(hole.joint).family, "a blade")
+
+
+def _diameter(hole: Hole, diameters: Diameters) -> float:
+    """Return the diameter of a hole's fastener, that of the hole if its joint has none."""
+    return diameters.get((hole.joint, hole.use), hole.diameter)
+
+
+def _two_limits(
+    code: str, mark: str, what: str, found: float, table: str, least: tuple[str, float], loaded: tuple[str, float],
+    remedy: str,
+) -> Shortfall | None:  # fmt: skip
+    """Return the shortfall below the least (clause, mm) as an error, below the loaded one as a warning, or None."""
+    if found < least[1] - ROUNDING:
+        return Shortfall(code, "error", mark, f"{what} ({table}, {least[0]})", found, least[1], remedy)
+    if found < loaded[1] - ROUNDING:
+        loaded_what = f"{what}, loaded ({table}, {loaded[0]})"
+        return Shortfall(code, "warning", mark, loaded_what, found, loaded[1], remedy)
+    return None
+
+
+def _worst(found: Iterable[Shortfall | None]) -> Iterator[Shortfall]:
+    """Yield the one that misses by most, errors before warnings; nothing if there is none."""
+    missed = [item for item in found if item is not None]
+    if missed:
+        yield min(missed, key=lambda item: (item.severity != "error", item.found - item.required))
+
+
+def plank_end_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Shortfall]:
+    """Yield AAG201: the hole too near to an end, one for bolts and one for screws; a slot counts from its end."""
+    for use in ("bolt", "screw"):
+        missed = []
+        for hole in (hole for hole in plank.blank.holes if hole.use == use):
+            d = _diameter(hole, diameters)
+            end = min(hole.station, plank.blank.length - hole.station) - hole.slot / 2.0
+            least, most = distances(hole.use, d, math.pi), distances(hole.use, d, 0.0)
+            limits = (("a3,c", least.a3_c), ("a3,t", most.a3_t))
+            what = f"{use} hole of {_joint_word(hole)} from the end"
+            missed.append(_two_limits("AAG201", plank.mark, what, end, table_of(hole.use, d), *limits, _LENGTHEN))
+        yield from _worst(missed)
+
+
+def plank_edge_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Shortfall]:
+    """Yield AAG202: the hole too near to an edge, one for bolts and one for screws."""
+    for use in ("bolt", "screw"):
+        missed = []
+        for hole in (hole for hole in plank.blank.holes if hole.use == use):
+            d = _diameter(hole, diameters)
+            edge = plank.blank.section.width / 2.0 - abs(hole.offset)
+            across = distances(hole.use, d, math.pi / 2.0)
+            limits = (("a4,c", across.a4_c), ("a4,t", across.a4_t))
+            what = f"{use} hole of {_joint_word(hole)} from the edge"
+            table = table_of(hole.use, d)
+            missed.append(_two_limits("AAG202", plank.mark, what, edge, table, *limits, "move the hole inwards"))
+        yield from _worst(missed)
+
+
+def plank_spacing_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Shortfall]:
+    """Yield AAG203: the two holes too near to each other; two are far enough apart if along or across the grain.
+
+    Of unlike fasteners the smaller distances are the least and the larger ones the most.
+    """
+    holes = plank.blank.holes
+    missed = []
+    for i, first in enumerate(holes):
+        for second in holes[i + 1 :]:
+            along = second.station - first.station - (first.slot + second.slot) / 2.0
+            kinds = [(hole.use, _diameter(hole, diameters)) for hole in (first, second)]
+            if along > max(5.0 * d for _, d in kinds):
+                break
+            missed.append(_spacing(plank.mark, first, second, along, kinds))
+    yield from _worst(missed)
+
+
+def _spacing(
+    mark: str, first: Hole, second: Hole, along: float, kinds: list[tuple[HoleUse, float]]
+) -> Shortfall | None:
+    across = abs(second.offset - first.offset)
+    with_grain, against = ([distances(*kind, angle) for kind in kinds] for angle in (0.0, math.pi / 2.0))
+    least = (min(one.a1 for one in against), min(one.a2 for one in with_grain))
+    most = (max(one.a1 for one in with_grain), max(one.a2 for one in against))
+    where = " and ".join(dict.fromkeys(_joint_word(hole) for hole in (first, second)))
+    table = table_of(*max(kinds, key=lambda kind: (kind[0] == "bolt", kind[1])))
+    # The direction in which less is missing: there the pattern is mended most easily.
+    name, found, i = ("a1", along, 0) if along / most[0] >= across / most[1] else ("a2", across, 1)
+    if along >= least[0] - ROUNDING or across >= least[1] - ROUNDING:
+        if along >= most[0] - ROUNDING or across >= most[1] - ROUNDING:
+            return None
+        least = (0.0, 0.0)
+    direction = "along" if i == 0 else "across"
+    what = f"holes of {where} from each other {direction} the grain"
+    remedy = "move the holes apart"
+    return _two_limits("AAG203", mark, what, found, table, (name, least[i]), (name, most[i]), remedy)
+
+
+def hole_size_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Shortfall]:
+    """Yield AAG204: bolt holes wider than the bolt + 1 mm (10.4.3), screw holes than the shank (10.4.5), and slots."""
+    wide: dict[str, list[Shortfall]] = defaultdict(list)
+    holes = ((plank.mark, hole) for shell in gridshell.shells for plank in shell.planks for hole in plank.blank.holes)
+    for mark, hole in holes:
+        d, width = _diameter(hole, diameters), hole.diameter
+        if hole.use == "bolt" and width > d + HOLE_PLAY + ROUNDING:
+            what, remedy = "bolt hole wider than the bolt + 1 mm (EN 1995-1-1, 10.4.3)", "drill it narrower"
+            wide["bolt"].append(Shortfall("AAG204", "error", mark, what, width, d + HOLE_PLAY, remedy))
+        if hole.use == "screw" and width > d + ROUNDING:
+            what = "screw hole wider than the shank (EN 1995-1-1, 10.4.5)"
+            remedy = "drill the shank's diameter, or count on the screws for withdrawal only"
+            wide["screw"].append(Shortfall("AAG204", "note", mark, what, width, d, remedy))
+        if hole.slot > 0.0:
+            what = "slot longer than the bolt + 1 mm (EN 1995-1-1, 10.4.3)"
+            remedy = "count on the friction of tightened bolts, or fix the nodes by fitted bolts when formed"
+            wide["slot"].append(Shortfall("AAG204", "note", mark, what, width + hole.slot, d + HOLE_PLAY, remedy))
+    for kind in ("bolt", "screw", "slot"):
+        yield from _grouped(wide[kind], "holes")
+
+
+def _grouped(items: list[Shortfall], noun: str) -> Iterator[Shortfall]:
+    """Yield the first of those of equal kind that miss by most to 0.1 mm, with how many there are."""
+    if items:
+        worst = max(items, key=lambda item: round(abs(item.found - item.required), 1))
+        count = f"one of {len(items)} {noun} alike: " if len(items) > 1 else ""
+        yield replace(worst, what=count + worst.what)
+
+
+def _screws_in(gridshell: Gridshell) -> dict[str, list[Screw]]:
+    """Return the screws of the joints of each coupling block."""
+    screws = {screw.mark: screw for shell in gridshell.shells for screw in shell.screws}
+    blocks = {block.mark for shell in gridshell.shells for block in shell.blocks}
+    found: dict[str, list[Screw]] = defaultdict(list)
+    for joint in all_joints(gridshell):
+        for member in blocks.intersection(joint.members):
+            found[member] += [screws[mark] for mark in joint.fasteners if mark in screws]
+    return found
+
+
+def _in_block(block: CouplingBlock, point: Floats) -> Floats:
+    axes = np.array([block.frame.x, block.frame.y, block.frame.z])
+    return np.asarray(axes @ (point - np.array(block.frame.origin)))
+
+
+def _block_screw_rules(block: CouplingBlock, screw: Screw, bolt: float) -> Iterator[Shortfall | None]:
+    """Yield what a screw driven into a block from its narrow face misses: end, face, and its point from the bolt."""
+    head = np.array(screw.frame.origin)
+    start, point = _in_block(block, head), _in_block(block, head + screw.length * np.array(screw.frame.z))
+    if abs(start[1] - point[1]) < _ALONG * screw.length:
+        return
+    d, table = screw.diameter, table_of("screw", screw.diameter)
+    along, across = screw_distances(d, 0.0), screw_distances(d, math.pi / 2.0)
+    name = f"{d:g} mm screw in a {block.thickness:g} mm coupling block,"
+    end, face = block.length / 2.0 - abs(start[0]), block.thickness / 2.0 - abs(start[2])
+    limits = (("a3,c", along.a3_c), ("a3,t", along.a3_t))
+    yield _two_limits("AAG205", block.mark, f"{name} from its end", end, table, *limits, "take longer blocks")
+    limits = (("a4,c", across.a4_c), ("a4,t", across.a4_t))
+    thinner = f"take screws of at most {block.thickness / 6.0:g} mm or prove it by test"
+    yield _two_limits("AAG205", block.mark, f"{name} from the block's face", face, table, *limits, thinner)
+    into = np.sign(point[1] - start[1])
+    for hole in block.holes:
+        ahead, beside = (hole.offset - point[1]) * into, abs(hole.station - point[0])
+        clear = math.hypot(beside, ahead) if ahead > 0.0 else beside
+        if clear < 4.0 * bolt - ROUNDING:
+            what = f"{name} its point from the bolt across it (as a2 of {table_of('bolt', bolt)})"
+            yield Shortfall("AAG205", "note", block.mark, what, float(clear), 4.0 * bolt, "take shorter screws")
+
+
+def block_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Shortfall]:
+    """Yield AAG205: distances of bolts and screws in the coupling blocks, grain along the beam; like ones together.
+
+    Never an error: the gap between the planks gives the block's thickness, and the planks bolted to both its faces keep
+    it from splitting; what the tables ask is to be replaced by a test.
+    """
+    screws = _screws_in(gridshell)
+    groups: dict[str, list[Shortfall]] = defaultdict(list)
+    for block in (block for shell in gridshell.shells for block in shell.blocks):
+        rules: list[Shortfall | None] = []
+        for hole in block.holes:
+            d = _diameter(hole, diameters)
+            least, most = bolt_distances(d, math.pi), bolt_distances(d, 0.0)
+            end, edge = block.length / 2.0 - abs(hole.station), block.width / 2.0 - abs(hole.offset)
+            limits = (("a3,c", least.a3_c), ("a3,t", most.a3_t))
+            what = f"M{d:g} bolt in a coupling block of {block.length:g} mm, from its end"
+            rules.append(
+                _two_limits("AAG205", block.mark, what, end, table_of("bolt", d), *limits, "take longer blocks")
+            )
+            limits = (("a4,c", most.a4_c), ("a4,t", bolt_distances(d, math.pi / 2.0).a4_t))
+            what = f"M{d:g} bolt in a coupling block, from its edge"
+            rules.append(_two_limits("AAG205", block.mark, what, edge, table_of("bolt", d), *limits, "move it inwards"))
+        bolt = max((_diameter(hole, diameters) for hole in block.holes), default=0.0)
+        for screw in screws[block.mark]:
+            rules += _block_screw_rules(block, screw, bolt)
+        for rule in rules:
+            if rule is not None:
+                groups[rule.what].append(replace(rule, severity="note" if rule.severity == "note" else "warning"))
+    for what in sorted(groups):
+        yield from _grouped(groups[what], "blocks")
+
+
+def stud_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Shortfall]:
+    """Yield AAG206: bolts in the studs, grain along the stud, forces across it; like ones together, never an error.
+
+    The nearest edge is that of the hexagon's flat through which the bolt passes: half its width.
+    """
+    groups: dict[str, list[Shortfall]] = defaultdict(list)
+    for stud in (stud for shell in gridshell.shells for stud in shell.studs if stud.holes):
+        d = diameters.get((stud.mark, "bolt"), stud.holes[0].diameter)
+        rules = bolt_distances(d, math.pi / 2.0)
+        end = stud.length / 2.0 - max(abs(hole.height) for hole in stud.holes)
+        edge = stud.across_flats / (2.0 * math.sqrt(3.0))
+        for found, clause, required, what in (
+            (end, "a3,c", rules.a3_c, "from its end"),
+            (edge, "a4,c", rules.a4_c, "from the edge of its flat"),
+        ):
+            if found < required - ROUNDING:
+                text = f"M{d:g} bolt in a stud of {stud.across_flats:g} mm, {what} (EN 1995-1-1, table 8.4, {clause})"
+                remedy = "prove the studs by test, or make them of plywood or steel"
+                groups[text].append(Shortfall("AAG206", "warning", stud.mark, text, found, required, remedy))
+    for text in sorted(groups):
+        yield from _grouped(groups[text], "studs")
+
+
+def washer_shortfalls(gridshell: Gridshell) -> Iterator[Shortfall]:
+    """Yield AAG207: washers narrower than 3 d or thinner than 0.3 d (EN 1995-1-1, 10.4.3); like ones together."""
+    groups: dict[str, list[Shortfall]] = defaultdict(list)
+    for bolt in (part for part in all_parts(gridshell) if isinstance(part, Bolt)):
+        for name, found, share in (
+            ("width", bolt.washer_diameter, WASHER_WIDTH),
+            ("thickness", bolt.washer_thickness, WASHER_THICKNESS),
+        ):
+            required = share * bolt.diameter
+            if found < required - ROUNDING:
+                what = f"washer of M{bolt.diameter:g}, {name} ({share:g} d: EN 1995-1-1, 10.4.3)"
+                remedy = "take washers for timber (ISO 7094)"
+                groups[what].append(Shortfall("AAG207", "warning", bolt.mark, what, found, required, remedy))
+    for what in sorted(groups):
+        yield from _grouped(groups[what], "bolts")
+
+
+def plank_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Shortfall]:
+    """Yield AAG201 to AAG203, the worst hole of each plank; planks that miss the same by the same 0.1 mm together."""
+    groups: dict[tuple[str, str, float], list[Shortfall]] = defaultdict(list)
+    for shell in gridshell.shells:
+        for plank in shell.planks:
+            for rule in (plank_end_shortfalls, plank_edge_shortfalls, plank_spacing_shortfalls):
+                for item in rule(plank, diameters):
+                    groups[item.code, item.what, round(item.found, 1)].append(item)
+    for alike in groups.values():
+        yield from _grouped(alike, "planks")
+
+
+def shortfalls(gridshell: Gridshell) -> Iterator[Shortfall]:
+    """Yield all of AAG201 to AAG207, like ones together under the first mark that misses by most."""
+    diameters = _diameters(gridshell)
+    yield from plank_shortfalls(gridshell, diameters)
+    yield from hole_size_shortfalls(gridshell, diameters)
+    yield from block_shortfalls(gridshell, diameters)
+    yield from stud_shortfalls(gridshell, diameters)
+    yield from washer_shortfalls(gridshell)

@@ -1,0 +1,146 @@
+"""Steel straps: the end of a geodesic on the edge plank that it stops at, and the two ridge planks at the crown."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from aag_cad.design import Design
+from aag_cad.geometry.framed import FramedCurve, framed_curve, frames_at, nearest_station, offset_curve
+from aag_cad.geometry.surface import unit
+from aag_cad.network.model import Crossing, CurveId, CurveNetwork, NetworkCurve
+from aag_cad.parts.clearance import Obstacle, is_free, placed_points
+from aag_cad.parts.fasteners import axis_frame, hexagon_bolt
+from aag_cad.parts.joints import BuiltJoint
+from aag_cad.parts.marks import Mark
+from aag_cad.parts.members import Drilling, curve_mark
+from aag_cad.parts.model import Blank, Bolt, CrossSection, Hole, Joint, Part, Strap
+from aag_cad.units import Floats, vector
+
+# EN 1995-1-1, table 8.4: a3,t from the end of the geodesic; 5 d along the grain.
+_END_DISTANCE = 80.0
+_STEEL_END = 20.0
+_FARTHEST = 160.0
+_BACK = 10.0
+_PAST = 60.0
+_FREE = 0.2
+
+
+# Station on the strap's line, offset across it, and the plank that the bolt passes.
+_Place: TypeAlias = tuple[float, float, CurveId]
+
+
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """The line of a strap on the surface and, for each of the two planks, ways to place its bolts, the best first."""
+
+    curve: FramedCurve
+    ways: tuple[tuple[tuple[_Place, ...], ...], tuple[tuple[_Place, ...], ...]]
+
+
+def _geodesic_run(design: Design, geodesic: NetworkCurve, crossing: Crossing) -> _Run:
+    """Return the line over the end of a geodesic and the edge plank past it.
+
+    Beams in the way move the bolts of the geodesic back, those of the edge plank aside, and at last leave it one.
+    """
+    diameter = design.joints.bolt_diameter
+    step, aside = 5.0 * diameter, 1.5 * diameter
+    plank, edge = crossing.curves
+    end, middle = geodesic.end, crossing.stations[0]
+    backs = np.arange(_END_DISTANCE, _END_DISTANCE + _FARTHEST, _BACK).tolist()
+    own = tuple(((end - back - step, 0.0, plank), (end - back, 0.0, plank)) for back in backs)
+    offsets = (0.0, aside, -aside)
+    pairs = tuple(((middle - step / 2.0, y, edge), (middle + step / 2.0, y, edge)) for y in offsets)
+    singles = tuple(((middle + along, y, edge),) for y in offsets for along in (0.0, diameter, -diameter))
+    return _Run(geodesic.curve, (own, (*pairs, *singles)))
+
+
+def _crown_run(design: Design, curves: dict[CurveId, NetworkCurve], crossing: Crossing) -> _Run:
+    """Return the straight line between two ridge planks near the ends at which they meet, two bolts in each."""
+    half = 2.5 * design.joints.bolt_diameter
+    ends = []
+    for curve in (curves[name] for name in crossing.curves):
+        nearer_start = crossing.stations[0] - curve.start < curve.end - crossing.stations[0]
+        back = _END_DISTANCE + 2.0 * half
+        frames = frames_at(curve.curve, np.array([curve.start + back if nearer_start else curve.end - back]))
+        ends.append((frames.point[0], frames.normal[0]))
+    (a, n), (b, m) = ends
+    reach = float(np.linalg.norm(b - a))
+
+    def evaluate(t: Floats) -> tuple[Floats, Floats]:
+        u = (t / reach)[:, None]
+        return a + u * (b - a), unit((1.0 - u) * n + u * m)
+
+    line = framed_curve(evaluate, -_PAST, reach + _PAST, reach + 2.0 * _PAST)
+    first, last = (
+        ((_PAST + at - half, 0.0, name), (_PAST + at + half, 0.0, name))
+        for at, name in zip((0.0, reach), crossing.curves, strict=True)
+    )
+    return _Run(line, ((first,), (last,)))
+
+
+def _bolt(design: Design, mark: Mark, number: int, run: _Run, place: _Place, side: float) -> tuple[Bolt, Drilling]:
+    """Return a bolt through strap and plank, head on the strap, and the drilling of the plank."""
+    station, offset, plank = place
+    timber, grip = design.timber.thickness, design.timber.thickness + design.ridge.strap_thickness
+    frames = frames_at(run.curve, np.array([station]))
+    normal, centre = side * frames.normal[0], frames.point[0] + offset * frames.binormal[0]
+    frame = axis_frame(centre + (grip - timber / 2.0) * normal, -normal, frames.tangent[0])
+    bolt = hexagon_bolt(f"{mark}-B{number}", design.joints.bolt_diameter, grip, frame)
+    axis = vector(centre), vector(normal)
+    return bolt, Drilling(curve_mark(mark.shell, plank), *axis, design.joints.bolt_hole, "bolt", str(mark))
+
+
+def _strap(design: Design, mark: Mark, run: _Run, places: Sequence[_Place], side: float) -> Strap:
+    """Return the strap on the inner (side -1) or outer face, just long enough for its bolts."""
+    ridge = design.ridge
+    at = np.array([station for station, _, _ in places])
+    low, high = float(at.min()) - _STEEL_END, float(at.max()) + _STEEL_END
+    off = side * (design.timber.thickness + ridge.strap_thickness) / 2.0
+    curve = offset_curve(run.curve, off, 0.0, low, high)
+    stations = nearest_station(curve, frames_at(run.curve, at).point, at - low)
+    holes = tuple(
+        Hole(float(s), offset, design.joints.bolt_hole, "bolt", str(mark))
+        for s, (_, offset, _) in zip(stations, places, strict=True)
+    )
+    return Strap(str(mark), curve, Blank(curve.length, CrossSection(ridge.strap_width, ridge.strap_thickness), holes))
+
+
+def _strapped(
+    design: Design, mark: Mark, crossing: Crossing, run: _Run, places: Sequence[_Place], side: float
+) -> BuiltJoint:
+    strap = _strap(design, mark, run, places, side)
+    bolted = [_bolt(design, mark, i, run, place, side) for i, place in enumerate(places, start=1)]
+    members = (*(curve_mark(mark.shell, name) for name in crossing.curves), strap.mark)
+    fasteners = tuple(bolt.mark for bolt, _ in bolted)
+    joint = Joint(str(mark), "ridge", crossing.point, crossing.normal, members, fasteners)
+    return BuiltJoint(joint, (strap, *(bolt for bolt, _ in bolted)), tuple(drilling for _, drilling in bolted))
+
+
+def strap_joint(
+    design: Design, network: CurveNetwork, mark: Mark, crossing: Crossing, among: Sequence[Obstacle]
+) -> BuiltJoint:
+    """Return a ridge joint with a strap inside, or outside where beams take the inside.
+
+    Where neither is free it lies inside, and the audit reports what runs into it.
+    """
+    curves = {curve.id: curve for curve in network.curves}
+    names = crossing.curves
+    on_geodesic = names[0].family == "G"
+    run = _geodesic_run(design, curves[names[0]], crossing) if on_geodesic else _crown_run(design, curves, crossing)
+    own = {curve_mark(mark.shell, name) for name in names}
+    others = [obstacle for obstacle in among if obstacle.part.mark not in own]
+
+    def free(*parts: Part) -> bool:
+        return all(is_free(placed_points(part), others, _FREE) for part in parts)
+
+    def first_free(ways: tuple[tuple[_Place, ...], ...], side: float) -> tuple[_Place, ...] | None:
+        return next((way for way in ways if free(*(_bolt(design, mark, 1, run, at, side)[0] for at in way))), None)
+
+    for side in (-1.0, 1.0):
+        chosen = [first_free(ways, side) for ways in run.ways]
+        places = [place for way in chosen if way is not None for place in way]
+        if None not in chosen and free(_strap(design, mark, run, places, side)):
+            return _strapped(design, mark, crossing, run, places, side)
+    return _strapped(design, mark, crossing, run, [*run.ways[0][0], *run.ways[1][0]], -1.0)

@@ -1,0 +1,166 @@
+"""Reuse passports: what a plank was, carried and kept, so that the next design can cut from it."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from aag_cad.errors import DesignError
+from aag_cad.geometry.framed import curvatures_at
+from aag_cad.mechanics.lamella import lamella_stress
+from aag_cad.parts.model import Blank, CrossSection, Gridshell, Hole, Plank, Timber
+from aag_cad.parts.quantities import largest_twist, smallest_radius
+from aag_cad.units import Floats
+
+SERVICE_LIFE_YEARS = 2.0
+SAW_KERF = 1.0
+REUSE_HEADER = ("mark", "length_mm", "width_mm", "thickness_mm", "species", "strength_class", "holes")
+_SPACING = 20.0
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A length of a blank that no hole touches, over its whole width: from and to, mm from the start."""
+
+    start: float
+    end: float
+
+    @property
+    def length(self) -> float:
+        """Length in mm."""
+        return self.end - self.start
+
+
+@dataclass(frozen=True, eq=False)
+class Strain:
+    """Bending curvature about the weak axis and twist along a plank: stations (n,) mm, the others (n,) 1/mm, rad/mm.
+
+    Both carry a sign: bending is positive where the face z > 0 of the blank is hollow, twist where the plank is a
+    right-handed screw.
+    """
+
+    stations: Floats
+    bending: Floats
+    twist: Floats
+
+
+@dataclass(frozen=True)
+class Passport:
+    """What is known of one plank when it is taken down; mm, rad/mm, N/mm2, from the model and not measured.
+
+    Utilisations are by the characteristic strengths f_m and f_v. ``smallest_radius`` is infinite for a plank that
+    stays straight. ``clear`` lists the stretches without holes, the longest first. The set that creep leaves is not
+    known before the plank is measured, so there is no figure for it.
+    """
+
+    mark: str
+    design: str
+    species: str
+    strength_class: str
+    section: CrossSection
+    length: float
+    stock_origin: str
+    holes: tuple[Hole, ...]
+    service_life_years: float
+    smallest_radius: float
+    smallest_radius_station: float
+    largest_twist: float
+    largest_twist_station: float
+    bending_stress: float
+    bending_utilisation: float
+    shear_stress: float
+    shear_utilisation: float
+    clear: tuple[Stretch, ...]
+
+
+def strain_along(plank: Plank, spacing: float = _SPACING) -> Strain:
+    """Return how a plank is bent and twisted, sampled about every ``spacing`` mm from end to end."""
+    stations = np.linspace(0.0, plank.curve.length, max(2, round(plank.curve.length / spacing) + 1))
+    curvatures = curvatures_at(plank.curve, stations)
+    # The thickness of an upright plank points against the binormal, that of a flat one along the normal.
+    bending = -curvatures.geodesic if plank.upright else curvatures.normal
+    return Strain(stations, bending, curvatures.torsion)
+
+
+def clear_stretches(blank: Blank) -> tuple[Stretch, ...]:
+    """Return the lengths between the edges of neighbouring holes and to the ends, the longest first."""
+    stretches, reached = [], 0.0
+    for hole in sorted(blank.holes, key=lambda hole: hole.station - (hole.diameter + hole.slot) / 2.0):
+        half = (hole.diameter + hole.slot) / 2.0
+        edge = min(hole.station - half, blank.length)
+        if edge > reached:
+            stretches.append(Stretch(reached, edge))
+        reached = max(reached, hole.station + half)
+    if blank.length > reached:
+        stretches.append(Stretch(reached, blank.length))
+    return tuple(sorted(stretches, key=lambda stretch: (-stretch.length, stretch.start)))
+
+
+def stock_origin(section: CrossSection) -> str:
+    """Return what a plank was cut from: a board split in two by a saw cut of 1 mm.
+
+    The paper, section 3: boards of 25 x 100 mm were bought and split to two planks of 12 x 100 mm.
+    """
+    return f"half of a board {2.0 * section.thickness + SAW_KERF:g} x {section.width:g} mm, split in two"
+
+
+def passport(plank: Plank, timber: Timber, design: str, *, service_life_years: float = SERVICE_LIFE_YEARS) -> Passport:
+    """Return the passport of a plank.
+
+    The paper, section 5, plans to take the gridshell down after two years and to reuse its planks. DesignError if the
+    service life is not above 0.
+    """
+    if not 0.0 < service_life_years < math.inf:
+        raise DesignError(
+            f"service_life_years: {service_life_years!r} is not allowed; give the planned years in use, above 0, e.g. 2"
+        )
+    strain = strain_along(plank)
+    stress = lamella_stress(plank, timber)
+    return Passport(
+        mark=plank.mark,
+        design=design,
+        species=timber.species,
+        strength_class=timber.strength_class,
+        section=plank.blank.section,
+        length=plank.blank.length,
+        stock_origin=stock_origin(plank.blank.section),
+        holes=plank.blank.holes,
+        service_life_years=service_life_years,
+        smallest_radius=smallest_radius(plank),
+        smallest_radius_station=float(strain.stations[np.argmax(np.abs(strain.bending))]),
+        largest_twist=largest_twist(plank),
+        largest_twist_station=float(strain.stations[np.argmax(np.abs(strain.twist))]),
+        bending_stress=stress.combined,
+        bending_utilisation=stress.combined / timber.bending_strength,
+        shear_stress=stress.torsion,
+        shear_utilisation=stress.torsion / timber.shear_strength,
+        clear=clear_stretches(plank.blank),
+    )
+
+
+def passports(gridshell: Gridshell, *, service_life_years: float = SERVICE_LIFE_YEARS) -> tuple[Passport, ...]:
+    """Return the passports of all planks of all shells, by mark."""
+    planks = sorted((plank for shell in gridshell.shells for plank in shell.planks), key=lambda plank: plank.mark)
+    return tuple(
+        passport(plank, gridshell.timber, gridshell.name, service_life_years=service_life_years) for plank in planks
+    )
+
+
+def reuse_row(held: Passport) -> tuple[str, ...]:
+    """Return a plank as stock for the next design, in the order of ``REUSE_HEADER``.
+
+    Holes are station:offset:diameter, stations from the start, joined by semicolons, to 0.1 mm. The format knows round
+    holes only: a slot is given as the round hole that holds it.
+    """
+    holes = (
+        f"{hole.station:.1f}:{round(hole.offset, 1) + 0.0:.1f}:{hole.diameter + hole.slot:g}" for hole in held.holes
+    )
+    return (
+        held.mark,
+        f"{held.length:.1f}",
+        f"{held.section.width:g}",
+        f"{held.section.thickness:g}",
+        held.species,
+        held.strength_class,
+        ";".join(holes),
+    )

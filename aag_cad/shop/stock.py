@@ -1,0 +1,357 @@
+"""Cutting stock: which boards to buy and what is cut from each, with the least length bought, and the proof of it.
+
+A board is cut to length first and then split, so each cut of a board gives ``planks_per_board`` pieces; the shorter ones
+are cut back to their own length. Sorted by length, the k-th longest cut can never be shorter than piece number
+(k - 1) planks_per_board + 1; grouping neighbours in that order reaches this for every k, so it costs nothing, and what
+is left is the cutting-stock problem of Gilmore and Gomory (1961) over several stock lengths.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from scipy.optimize import Bounds, LinearConstraint, linprog, milp
+from scipy.sparse import csr_array
+
+from aag_cad.units import Floats
+
+_NODES = 2_000
+_PATTERNS = 20_000
+_SLACK = 1e-7
+
+Pattern: TypeAlias = tuple[int, ...]
+Column: TypeAlias = tuple[Pattern, int]
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Something that the workshop cannot make as asked: the fields of a finding, whose severity is not told here."""
+
+    code: str
+    mark: str
+    what: str
+    found: float
+    allowed: float
+    unit: str
+    remedy: str
+
+
+@dataclass(frozen=True)
+class StockRules:
+    """What is bought and how it is sawn: stock lengths, width of a saw cut, loss at each end, mm."""
+
+    lengths: tuple[float, ...]
+    kerf: float
+    trim: float
+    planks_per_board: int = 1
+
+    @property
+    def longest_cut(self) -> float:
+        """The longest piece that the longest stock gives, mm."""
+        return max(self.lengths) - 2.0 * self.trim
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece to be cut: mark, length in mm, and which one it is of the pieces that are jointed into the part."""
+
+    mark: str
+    length: float
+    number: int = 1
+    of: int = 1
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A cut of a board: position of its start from the start of the board, length, and the pieces split from it."""
+
+    position: float
+    length: float
+    pieces: tuple[Piece, ...]
+
+
+@dataclass(frozen=True)
+class Board:
+    """A board (or bar) as bought, numbered from 1, and its cuts from one end to the other."""
+
+    number: int
+    length: float
+    cuts: tuple[Cut, ...]
+
+
+@dataclass(frozen=True)
+class CuttingPlan:
+    """Boards to buy, lengths in mm: ``bound`` is a lower bound of any plan, ``relaxation`` that of the linear programme.
+
+    ``first_fit_decreasing`` is what the usual rule of thumb would buy. ``refused`` pieces are longer than every stock.
+    """
+
+    boards: tuple[Board, ...]
+    planks_per_board: int
+    bound: float
+    relaxation: float
+    first_fit_decreasing: float
+    refused: tuple[Piece, ...]
+
+    @property
+    def bought(self) -> float:
+        """Length of all boards, mm."""
+        return sum(board.length for board in self.boards)
+
+    @property
+    def used(self) -> float:
+        """Length of all pieces as length of board, mm."""
+        pieces = (piece.length for board in self.boards for cut in board.cuts for piece in cut.pieces)
+        return math.fsum(pieces) / self.planks_per_board
+
+    @property
+    def waste(self) -> float:
+        """Length of board that ends as kerf, trimmed ends and offcuts, mm."""
+        return self.bought - self.used
+
+    @property
+    def waste_percent(self) -> float:
+        """Waste as a share of what is bought, per cent."""
+        return 100.0 * self.waste / self.bought if self.boards else 0.0
+
+    @property
+    def proven(self) -> bool:
+        """Whether no plan can buy less."""
+        return self.bought <= self.bound + _SLACK
+
+    @property
+    def counts(self) -> dict[float, int]:
+        """Number of boards of each stock length that is bought, shortest first."""
+        return dict(sorted(Counter(board.length for board in self.boards).items()))
+
+
+@dataclass(frozen=True)
+class _Task:
+    """The problem: sizes and rooms with one kerf each, in a common measure; stock in tenths of a millimetre, rising."""
+
+    sizes: tuple[int, ...]
+    demand: tuple[int, ...]
+    stock: tuple[int, ...]
+    room: tuple[int, ...]
+
+    @property
+    def step(self) -> int:
+        """All that can be bought is a multiple of this."""
+        return math.gcd(*self.stock)
+
+
+def _tenths(length: float) -> int:
+    return round(10.0 * length)
+
+
+def _task(sizes: Counter[int], rules: StockRules) -> _Task:
+    kerf, trim = _tenths(rules.kerf), _tenths(rules.trim)
+    ordered = sorted(sizes, reverse=True)
+    stock = sorted({_tenths(length) for length in rules.lengths})
+    net = tuple(size + kerf for size in ordered)
+    room = tuple(length - 2 * trim + kerf for length in stock)
+    common = math.gcd(*net)
+    return _Task(
+        tuple(size // common for size in net),
+        tuple(sizes[size] for size in ordered),
+        tuple(stock),
+        tuple(length // common for length in room),
+    )
+
+
+def _shortest_stock(task: _Task, pattern: Pattern) -> int:
+    """Return the index of the shortest stock that holds a pattern."""
+    filled = sum(count * size for count, size in zip(pattern, task.sizes, strict=True))
+    return next(i for i, room in enumerate(task.room) if filled <= room)
+
+
+def _first_fit_decreasing(task: _Task) -> list[Column]:
+    """Return the boards of the rule of thumb: longest pieces first, each into the first board with room for it.
+
+    Boards are opened in the longest stock; in the end each becomes the shortest stock that holds what is in it.
+    """
+    boards: list[list[int]] = []
+    left: list[int] = []
+    for i, (size, count) in enumerate(zip(task.sizes, task.demand, strict=True)):
+        for _ in range(count):
+            place = next((b for b, room in enumerate(left) if size <= room), len(boards))
+            if place == len(boards):
+                boards.append([0] * len(task.sizes))
+                left.append(task.room[-1])
+            boards[place][i] += 1
+            left[place] -= size
+    return [(tuple(board), _shortest_stock(task, tuple(board))) for board in boards]
+
+
+def _best_values(values: Floats, task: _Task) -> Floats:
+    """Return what pieces d and later are worth at most in a room c, (n + 1, room + 1): a bounded knapsack."""
+    best = np.zeros((len(values) + 1, task.room[-1] + 1))
+    for d in range(len(values) - 1, -1, -1):
+        best[d] = best[d + 1]
+        size = task.sizes[d]
+        for count in range(1, min(task.demand[d], task.room[-1] // size) + 1):
+            filled = best[d + 1, : -count * size] + count * values[d]
+            np.maximum(best[d, count * size :], filled, out=best[d, count * size :])
+    return best
+
+
+def _patterns_worth(
+    values: Floats, best: Floats, task: _Task, room: int, worth: float, enough: int
+) -> tuple[list[Pattern], bool]:
+    """Return patterns that fit into a room and are worth more than a value, and whether these are all of them.
+
+    Depth first; as ``best`` is known of every rest, each branch that is entered ends in a pattern.
+    """
+    found: list[Pattern] = []
+    counts = [0] * len(task.sizes)
+
+    def search(depth: int, left: int, value: float) -> bool:
+        if depth == len(counts):
+            found.append(tuple(counts))
+            return len(found) < enough
+        for count in range(min(task.demand[depth], left // task.sizes[depth]), -1, -1):
+            rest, total = left - count * task.sizes[depth], value + count * values[depth]
+            if total + best[depth + 1, rest] > worth:
+                counts[depth] = count
+                if not search(depth + 1, rest, total):
+                    return False
+        counts[depth] = 0
+        return True
+
+    return found, search(0, room, 0.0)
+
+
+def _matrix(columns: Sequence[Column]) -> csr_array:
+    return csr_array(np.array([pattern for pattern, _ in columns], dtype=np.float64).T)
+
+
+def _relaxation(task: _Task, columns: list[Column]) -> tuple[float, Floats]:
+    """Return the least bought in the linear programme over all patterns, in steps, and its duals (n,).
+
+    Column generation (Gilmore and Gomory 1961): it ends when no pattern is worth more than its stock. New patterns are
+    added to ``columns``.
+    """
+    while True:
+        costs = [task.stock[i] / task.step for _, i in columns]
+        answer = linprog(costs, A_ub=-_matrix(columns), b_ub=-np.array(task.demand), method="highs")
+        duals = np.maximum(0.0, -np.asarray(answer.ineqlin.marginals, dtype=np.float64))
+        best = _best_values(duals, task)
+        fresh: list[Column] = []
+        for i, (stock, room) in enumerate(zip(task.stock, task.room, strict=True)):
+            if best[0, room] > stock / task.step + _SLACK:
+                worth = best[0, room] - _SLACK / 2.0
+                fresh += [(pattern, i) for pattern in _patterns_worth(duals, best, task, room, worth, 1)[0]]
+        fresh = [column for column in fresh if column not in columns]
+        if not fresh:
+            return float(answer.fun), duals
+        columns += fresh
+
+
+def _least_bought(task: _Task, columns: Sequence[Column], lower: int) -> tuple[list[Column], bool]:
+    """Return the boards of the best plan from given patterns, and whether the integer programme is solved to the end.
+
+    That no plan buys less than ``lower`` steps is known, and lets the search end as soon as one is found.
+    """
+    costs = np.array([[task.stock[i] / task.step for _, i in columns]])
+    answer = milp(
+        costs[0],
+        integrality=np.ones(len(columns)),
+        bounds=Bounds(0.0, np.inf),
+        constraints=(
+            LinearConstraint(_matrix(columns), np.array(task.demand), np.inf),
+            LinearConstraint(csr_array(costs), lower, np.inf),
+        ),
+        # A limit of nodes and not of seconds: the plan must not depend on the speed of the machine.
+        options={"mip_rel_gap": 0.0, "node_limit": _NODES},
+    )
+    if answer.x is None:
+        return [], False
+    times = [round(x) for x in answer.x]
+    return [column for column, count in zip(columns, times, strict=True) for _ in range(count)], answer.status == 0
+
+
+def _bought(task: _Task, boards: Iterable[Column]) -> int:
+    return sum(task.stock[i] for _, i in boards) // task.step
+
+
+def _better(task: _Task, plan: list[Column], other: list[Column]) -> list[Column]:
+    return other if other and _bought(task, other) < _bought(task, plan) else plan
+
+
+def _solved(task: _Task) -> tuple[list[Column], int, float, int]:
+    """Return the best plan's boards, its lower bound and the linear programme's, and first-fit-decreasing; in steps.
+
+    If the plan from the generated patterns misses the bound, the integer programme is solved again over all patterns
+    whose reduced cost is less than the gap: no better plan holds any other.
+    """
+    usual = _first_fit_decreasing(task)
+    singles = [tuple(int(i == j) for j in range(len(task.sizes))) for i in range(len(task.sizes))]
+    columns = sorted({*usual, *((single, _shortest_stock(task, single)) for single in singles)})
+    relaxed, duals = _relaxation(task, columns)
+    lower = math.ceil(relaxed - 1e-6)
+    best = _better(task, usual, _least_bought(task, columns, lower)[0])
+    if _bought(task, best) > lower:
+        gap = _bought(task, best) - 1.0 - relaxed
+        near: set[Column] = set(best)
+        complete, values = True, _best_values(duals, task)
+        for i, (stock, room) in enumerate(zip(task.stock, task.room, strict=True)):
+            worth = stock / task.step - gap - 1e-6
+            patterns, ended = _patterns_worth(duals, values, task, room, worth, _PATTERNS)
+            near.update((pattern, i) for pattern in patterns if any(pattern))
+            complete = complete and ended
+        second, solved = _least_bought(task, sorted(near), lower)
+        best = _better(task, best, second)
+        if solved and complete:
+            lower = _bought(task, best)
+    return best, lower, relaxed, _bought(task, usual)
+
+
+def grouped_pieces(pieces: Iterable[Piece], planks_per_board: int) -> list[tuple[Piece, ...]]:
+    """Return what is split from the same cut: neighbours by length, longest first; the last group may be smaller."""
+    ordered = sorted(pieces, key=lambda piece: (-piece.length, piece.mark, piece.number))
+    return [tuple(ordered[i : i + planks_per_board]) for i in range(0, len(ordered), planks_per_board)]
+
+
+def _boards(task: _Task, plan: Iterable[Column], groups: Sequence[tuple[Piece, ...]], rules: StockRules) -> list[Board]:
+    """Return the plan with its pieces: cuts that nobody needs are left out, and boards as short as that allows."""
+    lengths = sorted({group[0].length for group in groups}, reverse=True)
+    waiting = [[group for group in groups if group[0].length == length] for length in lengths]
+    filled: list[tuple[int, list[tuple[Piece, ...]]]] = []
+    for pattern, _ in sorted(plan, key=lambda column: (column[1], column[0]), reverse=True):
+        taken = [min(count, len(left)) for count, left in zip(pattern, waiting, strict=True)]
+        cuts = [left.pop(0) for count, left in zip(taken, waiting, strict=True) for _ in range(count)]
+        if cuts:
+            filled.append((task.stock[_shortest_stock(task, tuple(taken))], cuts))
+    filled.sort(key=lambda item: (-item[0], [-group[0].length for group in item[1]], item[1][0][0].mark))
+    boards = []
+    for number, (length, cuts) in enumerate(filled, start=1):
+        position, listed = _tenths(rules.trim), []
+        for group in cuts:
+            listed.append(Cut(position / 10.0, group[0].length, group))
+            position += _tenths(group[0].length) + _tenths(rules.kerf)
+        boards.append(Board(number, length / 10.0, tuple(listed)))
+    return boards
+
+
+def cutting_plan(pieces: Iterable[Piece], rules: StockRules) -> CuttingPlan:
+    """Return the boards that give all pieces with the least length bought; lengths count in tenths of a millimetre.
+
+    Pieces longer than every stock are refused, not an error. The bound is that of the linear programme, rounded up to
+    what can be bought, or the optimum itself where the integer programme is searched to its end.
+    """
+    rounded = [Piece(piece.mark, round(piece.length, 1), piece.number, piece.of) for piece in pieces]
+    fitting = [piece for piece in rounded if _tenths(piece.length) <= _tenths(rules.longest_cut)]
+    refused = sorted(set(rounded) - set(fitting), key=lambda piece: (piece.mark, piece.number))
+    groups = grouped_pieces(fitting, rules.planks_per_board)
+    if not groups:
+        return CuttingPlan((), rules.planks_per_board, 0.0, 0.0, 0.0, tuple(refused))
+    task = _task(Counter(_tenths(group[0].length) for group in groups), rules)
+    plan, lower, relaxed, usual = _solved(task)
+    boards = _boards(task, plan, groups, rules)
+    step = task.step / 10.0
+    return CuttingPlan(
+        tuple(boards), rules.planks_per_board, lower * step, relaxed * step, usual * step, tuple(refused)
+    )
