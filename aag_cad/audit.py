@@ -10,9 +10,11 @@ import numpy as np
 from aag_cad.design import Design
 from aag_cad.mechanics.fastener_spacing import shortfalls
 from aag_cad.mechanics.lamella import LamellaStress, lamella_stress
+from aag_cad.mechanics.supports import footing_checks
+from aag_cad.parts.bolting import axis_distance, bolt_holes, bolts_by_joint
 from aag_cad.parts.clash import clashes
-from aag_cad.parts.forming import formed_points
-from aag_cad.parts.model import Bolt, Gridshell, Plank, Shell, all_parts
+from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.model import Gridshell, Plank, Shell, all_joints, all_parts
 from aag_cad.units import Floats, deg_per_m
 
 Severity: TypeAlias = Literal["error", "warning", "note"]
@@ -112,7 +114,7 @@ def clash_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
 
 def joint_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     """Yield AAG501 (part without joint), AAG502 (joint whose part is missing) and AAG503 (joint without fastener)."""
-    joints = [joint for shell in gridshell.shells for joint in shell.joints] + list(gridshell.joints)
+    joints = all_joints(gridshell)
     named = {mark: joint.mark for joint in joints for mark in (*joint.members, *joint.fasteners)}
     present = {part.mark for part in all_parts(gridshell)}
     for mark in sorted(present - set(named)):
@@ -127,35 +129,22 @@ def joint_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
 
 
 def bolt_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
-    """Yield AAG601 (a hole off the axis of its bolt) and AAG602 (a bolt that does not pass one hole in each plank)."""
-    for shell in gridshell.shells:
-        bolts = _bolts_by_joint(shell)
-        passed: Counter[str] = Counter()
-        for plank in shell.planks:
-            holes = [hole for hole in plank.blank.holes if hole.use == "bolt"]
-            if not holes:
-                continue
-            centres = formed_points(plank, np.array([[hole.station, hole.offset, 0.0] for hole in holes]))
-            for hole, centre in zip(holes, centres, strict=True):
-                gap, mark = min((_axis_distance(bolt, centre), bolt.mark) for bolt in bolts[hole.joint])
-                passed[mark] += 1
-                if gap > AXIS_TOLERANCE:
-                    what = f"hole at station {hole.station:.1f} mm off the axis of {mark} by"
-                    remedy = "drill where the bolt passes"
-                    yield Finding("AAG601", "error", plank.mark, what, gap, AXIS_TOLERANCE, "mm", remedy)
-        for bolt in shell.bolts:
-            if passed[bolt.mark] != 2:
-                remedy = "drill both sibling planks for it"
-                yield Finding("AAG602", "error", bolt.mark, "holes on its axis", passed[bolt.mark], 2, "", remedy)
+    """Yield AAG601 (a hole off the axis of its bolt) and AAG602 (a bolt that does not pass one hole in each plank).
 
-
-def _bolts_by_joint(shell: Shell) -> dict[str, list[Bolt]]:
-    bolts = {bolt.mark: bolt for bolt in shell.bolts}
-    return {joint.mark: [bolts[mark] for mark in joint.fasteners if mark in bolts] for joint in shell.joints}
-
-
-def _axis_distance(bolt: Bolt, point: Floats) -> float:
-    return float(np.linalg.norm(np.cross(point - np.array(bolt.frame.origin), np.array(bolt.frame.z))))
+    A bolt of a beam passes both siblings, a bolt of steel the plank and the steel.
+    """
+    bolts = bolts_by_joint(gridshell)
+    passed: Counter[str] = Counter()
+    for mark, joint, station, centre in bolt_holes(gridshell):
+        gap, bolt = min((axis_distance(axis, centre), name) for name, axis in bolts[joint].items())
+        passed[bolt] += 1
+        if gap > AXIS_TOLERANCE:
+            what = f"hole at station {station:.1f} mm off the axis of {bolt} by"
+            yield Finding("AAG601", "error", mark, what, gap, AXIS_TOLERANCE, "mm", "drill where the bolt passes")
+    for name in sorted({name for named in bolts.values() for name in named}):
+        if passed[name] != 2:
+            remedy = "drill both parts that it joins"
+            yield Finding("AAG602", "error", name, "holes on its axis", passed[name], 2, "", remedy)
 
 
 def _node_angles_deg(shell: Shell) -> Floats:
@@ -193,6 +182,31 @@ def boundary_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding
             yield Finding("AAG702", "warning", plank.mark, what, bow, BOW, "mm", remedy)
 
 
+def support_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG801 and AAG802: concrete blocks too light for wind suction or for the thrust of the shell."""
+    for check in footing_checks(design, gridshell):
+        remedy = f"take blocks of {check.needed_mass:.0f} kg or more, or anchor them"
+        for code, what, found in (
+            ("AAG801", "blocks under wind suction, utilisation", check.uplift_utilisation),
+            ("AAG802", "blocks sliding under own weight and snow, utilisation", check.sliding_utilisation),
+        ):
+            if found > 1.0:
+                yield Finding(code, "warning", check.shell, what, found, 1.0, "", remedy)
+
+
+def ridge_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG504: neighbouring shells that should meet in a ridge without a blade between them."""
+    count = len(gridshell.shells)
+    if count == 1 or design.shells.top == "level":
+        return
+    joined = {parse_mark(blade.mark).family for blade in gridshell.blades}
+    for i in range(count):
+        family = f"R{i + 1}{(i + 1) % count + 1}"
+        if family not in joined:
+            remedy = "make the ridge planks of the shells mirror images, or join them by hand"
+            yield Finding("AAG504", "warning", family, "blades", 0, 1, "", remedy)
+
+
 CHECKS: tuple[Check, ...] = (
     forming_findings,
     hole_findings,
@@ -202,6 +216,8 @@ CHECKS: tuple[Check, ...] = (
     bolt_findings,
     angle_findings,
     boundary_findings,
+    support_findings,
+    ridge_findings,
 )
 _ORDER = {"error": 0, "warning": 1, "note": 2}
 

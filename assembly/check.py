@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Plank, Screw, Shell, Stud, all_parts, shell_parts
+from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Plank, Screw, Shell, Strap, Stud, all_parts, shell_parts
 from assembly.steps import Plan, Step
 
 
@@ -101,9 +101,9 @@ def _orders(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]]) -> It
             if mark in studs and mark in at:
                 yield f"{mark} is a stud", at[mark], hoist
                 yield from ((f"{mark} holds {plank}", at[plank], at[mark]) for plank in joint.members if plank in at)
-    foot = {mark for joint in shell.joints if joint.kind == "foot" for mark in joint.fasteners}
+    later = {mark for joint in shell.joints if joint.kind in ("foot", "footing", "cover") for mark in joint.fasteners}
     for part in shell_parts(shell):
-        stays = isinstance(part, Plank | Stud | CouplingBlock | Bolt | Screw) and part.mark not in foot
+        stays = isinstance(part, Plank | Stud | CouplingBlock | Bolt | Screw | Strap) and part.mark not in later
         if part.mark in at and stays:
             yield f"{part.mark} is part of the stiff shell", at[part.mark], stand
 

@@ -8,10 +8,14 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from aag_cad.parts.assemblies import beam_of_parts
-from aag_cad.parts.model import Joint, Part, Shell, shell_parts
+from aag_cad.parts.model import Joint, JointKind, Part, Shell, shell_parts
 from assembly.errors import PlanError
 
 Group: TypeAlias = Literal["beams", "studs", "edges", "outside", "inside", "feet", "standing", "cover"]
+
+
+# What is fixed on the site, when the shell is stiff.
+_LATER: dict[JointKind, Group] = {"footing": "feet", "foot": "standing", "cover": "cover"}
 
 
 @dataclass(frozen=True)
@@ -61,19 +65,17 @@ def _homes(shell: Shell, block_beam: dict[str, str]) -> dict[tuple[Group, str], 
     """Return the fasteners by what they are added with: a group of the kit and the mark of a piece in it."""
     families = {plank.mark: plank.family for plank in shell.planks}
     bolts, studs = {bolt.mark for bolt in shell.bolts}, {stud.mark for stud in shell.studs}
-    outer, rods = driven_from_outside(shell), {rod.mark for rod in shell.rods}
+    outer = driven_from_outside(shell)
     straps = {strap.mark for strap in shell.straps}
 
     def home(joint: Joint, fastener: str) -> tuple[Group, str] | None:
-        if joint.kind == "cover":
-            return "cover", ""
+        if joint.kind in _LATER:
+            return _LATER[joint.kind], ""
         hub = next((mark for mark in joint.members if mark in studs or mark in block_beam), "")
         if hub in studs:
             return "studs", hub
         if hub and fastener in bolts:
             return "beams", block_beam[hub]
-        if joint.kind == "foot":
-            return ("feet" if fastener in rods else "standing"), ""
         flat = sorted((families[mark], mark) for mark in joint.members if families.get(mark) in ("E", "G"))
         if not flat:
             return None

@@ -1,15 +1,14 @@
 """Who lies above whom: the heights of the members at each crossing, and the order of laying that follows."""
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
 import networkx as nx
 import numpy as np
 
-from aag_cad.parts.model import Joint, Plank, Shell, shell_parts
-from aag_cad.parts.products import part_frame
+from aag_cad.parts.model import Joint, Plank, Shell
 from aag_cad.units import Floats
 from assembly.errors import PlanError
 
@@ -40,16 +39,18 @@ def _points_at_joints(shell: Shell) -> dict[tuple[str, str], Floats]:
 
 
 def crossing_levels(shell: Shell) -> dict[str, tuple[Level, ...]]:
-    """Return the members of every joint of a shell from the lowest to the highest along its outward normal."""
+    """Return planks, studs and blocks of every joint of a shell from the lowest to the highest along its normal."""
     points = _points_at_joints(shell)
-    frames = {part.mark: part_frame(part) for part in shell_parts(shell)}
-    points |= {(mark, ""): np.array(frame.origin) for mark, frame in frames.items() if frame is not None}
+    studs = {stud.mark: np.array(stud.frame.origin) for stud in shell.studs}
+    hubs = studs | {block.mark: np.array(block.frame.origin) for block in shell.blocks}
 
-    def level(joint: Joint, mark: str) -> Level:
-        point = points[(mark, joint.mark)] if (mark, joint.mark) in points else points[(mark, "")]
-        return Level(float((point - np.array(joint.point)) @ np.array(joint.normal)), mark)
+    def levels(joint: Joint) -> Iterator[Level]:
+        for mark in joint.members:
+            point = points.get((mark, joint.mark), hubs.get(mark))
+            if point is not None:
+                yield Level(float((point - np.array(joint.point)) @ np.array(joint.normal)), mark)
 
-    return {joint.mark: tuple(sorted(level(joint, mark) for mark in joint.members)) for joint in shell.joints}
+    return {joint.mark: tuple(sorted(levels(joint))) for joint in shell.joints}
 
 
 def layer_precedence(shell: Shell) -> "nx.DiGraph[str]":

@@ -31,13 +31,21 @@ def _codes(findings: list[Finding], mark: str) -> set[tuple[str, str]]:
     return {(finding.code, finding.severity) for finding in findings if finding.mark == mark}
 
 
-def test_the_vault_has_no_error_and_says_which_bolts_sit_near_the_ridge_ends(
-    design: Design, gridshell: Gridshell
-) -> None:
+def test_the_beams_of_the_vault_say_which_bolts_sit_near_the_ridge_ends(design: Design, gridshell: Gridshell) -> None:
+    """24 planks of 60 to 68 mm at the end in place of the 80 mm that a loaded end asks: four kinds, named once each."""
+    found = [f for f in hole_findings(design, gridshell) if f.mark[3:5] in ("A1", "A2")]
+    assert [(f.code, f.severity, f.mark) for f in found] == [
+        ("AAG201", "warning", mark) for mark in ("S1-A1-02-L", "S1-A1-02-R", "S1-A1-03-L", "S1-A1-03-R")
+    ]
+    assert all("loaded (EN 1995-1-1, table 8.4, a3,t)" in f.text and "allowed 80 mm" in f.text for f in found)
+    assert sum(int(f.what.split()[2]) for f in found) == 24
+
+
+def test_the_vault_has_no_error(design: Design, gridshell: Gridshell) -> None:
     found = audit(design, gridshell)
-    assert Counter((f.code, f.severity) for f in found) == {("AAG201", "warning"): 24, ("AAG503", "note"): 87}
-    near = [f for f in found if f.code == "AAG201"]
-    assert all("loaded" in f.text and "80 mm" in f.text for f in near)
+    others = [f for f in found if not f.code.startswith("AAG2")]
+    assert "error" not in {f.severity for f in found}
+    assert Counter((f.code, f.severity) for f in others) == {("AAG503", "note"): 87}
     unfixed = {f.mark[3] for f in found if f.code == "AAG503"}
     assert unfixed == {"F", "R"}, "shoes and blades are not placed yet: 14 feet, 14 ridge ends and the crown per shell"
 

@@ -14,6 +14,7 @@ from aag_cad.shop.groups import HOW_TO_LAY, DrillGroup, cut_slope, drawn_face
 from assembly.ranges import short_mark
 
 Point: TypeAlias = tuple[float, float]
+Side: TypeAlias = Literal["left", "centre", "right"]
 
 OUTLINE, MARKS, DIMENSIONS, CHECK_BAR, TITLE = "OUTLINE", "MARKS", "DIMENSIONS", "CHECK_BAR", "TITLE"
 HOLE_LAYERS: dict[HoleUse, str] = {use: f"HOLES_{use.upper()}" for use in get_args(HoleUse)}
@@ -34,8 +35,10 @@ _LARGE = 7.0
 _CHARACTER = 1.0
 _CHAIN = 14.0
 _RUNNING = 30.0
+_PITCH = 14.0
+_BESIDE = 6.5
 _ON_THE_LINE = 0.05
-_MOST_NAMES = 3
+_MOST_NAMES = 2
 
 
 @dataclass(frozen=True)
@@ -83,7 +86,7 @@ class Text:
     content: str
     at: Point
     height: float
-    anchor: Literal["left", "centre", "right"] = "left"
+    anchor: Side = "left"
     rotation_deg: float = 0.0
 
 
@@ -97,14 +100,6 @@ class Drawing:
     name: str
     items: tuple[Item, ...]
     extent: tuple[float, float, float, float]
-
-
-@dataclass(frozen=True)
-class HoleGroup:
-    """Neighbouring holes for one joint: their indices, and the joint's name on the drawing."""
-
-    holes: tuple[int, ...]
-    name: str
 
 
 def spread(wanted: Sequence[float], gap: float) -> list[float]:
@@ -139,19 +134,13 @@ def is_upper(hole: Hole) -> bool:
     return hole.offset > -_ON_THE_LINE
 
 
-def joint_name(marks: Sequence[str]) -> str:
-    """Return the joints that one hole serves in the planks of a group, without their shell: ``K-001`` or ``K-4 / K-9``.
+def joint_names(marks: Sequence[str]) -> tuple[str, ...]:
+    """Return the joints that one hole serves in the planks of a group, without their shell: ``K-001``, ``K-049``.
 
-    More than three are cut short to the first and how many follow.
+    More than two are cut short to the first and how many follow.
     """
-    names = list(dict.fromkeys(short_mark(mark) for mark in marks))
-    return " / ".join(names) if len(names) <= _MOST_NAMES else f"{names[0]} + {len(names) - 1}"
-
-
-def hole_groups(joints: Sequence[Sequence[str]]) -> tuple[HoleGroup, ...]:
-    """Return the holes of a blank gathered by joint, from the joints that each hole serves, hole by hole."""
-    runs = groupby(range(len(joints)), key=lambda i: tuple(joints[i]))
-    return tuple(HoleGroup(tuple(indices), joint_name(marks)) for marks, indices in runs)
+    names = tuple(dict.fromkeys(short_mark(mark) for mark in marks))
+    return names if len(names) <= _MOST_NAMES else (names[0], f"+ {len(names) - 1}")
 
 
 def diameter_text(diameter: float, slot: float) -> str:
@@ -191,18 +180,14 @@ def _hole_items(blank: Blank) -> list[Item]:
     return items
 
 
-def _mark_items(group: DrillGroup, joints: Sequence[Sequence[str]]) -> list[Item]:
-    """Return the joint marks beside their holes, the template's mark and the ends."""
-    holes = group.master.blank.holes
-    items: list[Item] = []
-    for run in hole_groups(joints):
-        right = max(holes[i].station + (holes[i].diameter + holes[i].slot) / 2.0 for i in run.holes)
-        items.append(Text(MARKS, run.name, (right + 4.0, 0.0), _SMALL))
-    items.append(Polyline(MARKS, ((-3.0, 0.0), (-15.0, 6.0), (-15.0, -6.0))))
-    items.append(Text(MARKS, "START", (-20.0, 0.0), _LARGE, "right"))
-    items.append(Text(MARKS, group.mark, (-20.0, 25.0), 2.0 * _LARGE, "right"))
-    items.append(Text(MARKS, "END", (group.master.blank.length + 8.0, 0.0), _LARGE))
-    return items
+def _mark_items(group: DrillGroup) -> list[Item]:
+    """Return the template's mark and the ends."""
+    return [
+        Polyline(MARKS, ((-3.0, 0.0), (-15.0, 6.0), (-15.0, -6.0))),
+        Text(MARKS, "START", (-20.0, 0.0), _LARGE, "right"),
+        Text(MARKS, group.mark, (-20.0, 25.0), 2.0 * _LARGE, "right"),
+        Text(MARKS, "END", (group.master.blank.length + 8.0, 0.0), _LARGE),
+    ]
 
 
 def _callout(hole: Hole) -> str:
@@ -211,25 +196,38 @@ def _callout(hole: Hole) -> str:
     return f"{across}  {diameter_text(hole.diameter, hole.slot)}"
 
 
-def _side_items(blank: Blank, holes: Sequence[Hole], sign: float) -> list[Item]:
-    """Return the dimensions on one side: a chain from hole to hole, then running ones with offset and diameter."""
+def _running_items(blank: Blank, named: Sequence[tuple[Hole, str]], sign: float) -> list[Item]:
+    """Return what stands at each hole of one side: station, offset, diameter, and beside them the joint."""
     edge, length = blank.section.width / 2.0, blank.length
-    # The chain is made of the printed stations, so that a tape along the plank agrees with it.
-    stations = [0.0, *(round(hole.station, 1) for hole in holes), round(length, 1)]
-    running = [f"{at:.1f}  {_callout(hole)}" for at, hole in zip(stations[1:], holes, strict=False)]
-    exact = [0.0, *(hole.station for hole in holes), length]
     chain, foot, text = (sign * (edge + reach) for reach in (_CHAIN, _RUNNING - 4.0, _RUNNING))
-    items: list[Item] = [Line(DIMENSIONS, (0.0, chain), (length, chain))]
-    for at, place, content in zip(
-        exact, spread(exact, 1.5 * _SMALL), ["0.0", *running, f"{stations[-1]:.1f} end"], strict=True
-    ):
+    entries = [
+        (0.0, "0.0", ""),
+        *((hole.station, f"{hole.station:.1f}  {_callout(hole)}", name) for hole, name in named),
+        (length, f"{length:.1f} end", ""),
+    ]
+    items: list[Item] = []
+    for place, (at, content, name) in zip(spread([entry[0] for entry in entries], _PITCH), entries, strict=True):
         items.append(Line(DIMENSIONS, (at, sign * (edge + 2.0)), (at, chain + sign * 3.0)))
         items.append(Line(DIMENSIONS, (at, chain + sign * 3.0), (place, foot)))
         items.append(Line(DIMENSIONS, (at - 1.5, chain - 1.5), (at + 1.5, chain + 1.5)))
-        items.append(Text(DIMENSIONS, content, (place, text), _SMALL, "left" if sign > 0.0 else "right", 90.0))
-    steps = [f"{b - a:.1f}" for a, b in pairwise(stations)]
+        side: Side = "left" if sign > 0.0 else "right"
+        items.append(Text(DIMENSIONS, content, (place, text), _SMALL, side, 90.0))
+        if name:
+            items.append(Text(MARKS, name, (place + _BESIDE, text), _SMALL, side, 90.0))
+    return items
+
+
+def _chain_items(blank: Blank, holes: Sequence[Hole], sign: float) -> list[Item]:
+    """Return the dimensions from hole to hole on one side, between the blank and the chain line.
+
+    They are differences of printed stations, so that a tape along the plank agrees with them.
+    """
+    chain, length = sign * (blank.section.width / 2.0 + _CHAIN), blank.length
+    exact = [0.0, *(hole.station for hole in holes), length]
+    steps = [f"{round(b, 1) - round(a, 1):.1f}" for a, b in pairwise(exact)]
     middles = [(a + b) / 2.0 for a, b in pairwise(exact)]
     widest = max(len(step) for step in steps) * _CHARACTER * _SMALL
+    items: list[Item] = [Line(DIMENSIONS, (0.0, chain), (length, chain))]
     for place, step in zip(spread(middles, widest), steps, strict=True):
         items.append(Text(DIMENSIONS, step, (place, chain - sign * (_SMALL * 0.8)), _SMALL, "centre"))
     return items
@@ -243,8 +241,8 @@ def _title_lines(group: DrillGroup, title: str, timber: Timber) -> tuple[str, ..
         f"   {timber.species} {timber.strength_class}   holes {', '.join(hole_kinds(blank)) or 'none'}",
         f"{count} plank{'s' if count > 1 else ''}, clamped and drilled in stacks of at most {group.stack_limit}",
         *laying_lines(group),
-        f"Drawn: {group.master.mark}, {drawn_face(group.master)}. Joint marks without their shell.",
-        "Dimensions in mm from the start; per hole: station, offset from the centre line (up is +), diameter.",
+        f"Drawn: {group.master.mark}, {drawn_face(group.master)}. Joints stand without their shell.",
+        "Dimensions in mm from the start; per hole: station, offset from the centre line (up is +), diameter, joint.",
     )
 
 
@@ -260,12 +258,13 @@ def blank_drawing(group: DrillGroup, joints: Sequence[Sequence[str]], title: str
     """Return the drawing of a drilling group; ``joints`` are the joints that each hole of the master serves."""
     blank = group.master.blank
     edge = blank.section.width / 2.0
-    upper = [hole for hole in blank.holes if is_upper(hole)]
-    lower = [hole for hole in blank.holes if not is_upper(hole)]
+    named = [(hole, " / ".join(joint_names(marks))) for hole, marks in zip(blank.holes, joints, strict=True)]
+    lower = any(not is_upper(hole) for hole in blank.holes)
     reach = _RUNNING + 20.0 * _CHARACTER * _SMALL
-    items: list[Item] = [Polyline(OUTLINE, outline_corners(blank)), *_hole_items(blank), *_mark_items(group, joints)]
-    items += _side_items(blank, upper, 1.0)
-    items += _side_items(blank, lower, -1.0) if lower else []
+    items: list[Item] = [Polyline(OUTLINE, outline_corners(blank)), *_hole_items(blank), *_mark_items(group)]
+    for sign in (1.0, -1.0) if lower else (1.0,):
+        side = [(hole, name) for hole, name in named if is_upper(hole) == (sign > 0.0)]
+        items += [*_running_items(blank, side, sign), *_chain_items(blank, [hole for hole, _ in side], sign)]
     below = -edge - (reach if lower else 1.5 * _CHAIN)
     items += _check_bar(0.0, below - 2.0 * _LARGE)
     lines = _title_lines(group, title, timber)

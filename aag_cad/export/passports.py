@@ -33,7 +33,7 @@ PASSPORTS_VERSION = 1
 _DRAWING = 180.0
 _SCALES = (5, 10, 15, 20, 25, 30, 40, 50, 60, 75, 100, 150, 200, 250, 500)
 _ACROSS = 10.0
-_CHART = 10.0
+_CHART = 9.0
 _CHART_SPACING = 100.0
 # Less twist than this is none: what is left of it comes from rounding.
 _NO_TWIST_DEG_PER_M = 0.01
@@ -170,7 +170,7 @@ def _facts(held: Passport) -> list[tuple[str, str]]:
     twist = deg_per_m(held.largest_twist)
     twisted = f"{twist:.1f} °/m at {held.largest_twist_station:.0f} mm" if twist >= _NO_TWIST_DEG_PER_M else "nothing"
     radius = f"{held.smallest_radius / MM_PER_M:.2f} m at {held.smallest_radius_station:.0f} mm"
-    clear = ", ".join(f"{each.start:.0f} to {each.end:.0f} ({each.length:.0f})" for each in held.clear[:3])
+    clear = ", ".join(f"{each.start:.0f}\N{EN DASH}{each.end:.0f} ({each.length:.0f})" for each in held.clear[:3])
     return [
         (
             "plank",

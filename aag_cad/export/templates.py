@@ -18,7 +18,7 @@ from typing import Any, Literal, TypeAlias
 import typst
 
 from aag_cad.errors import DesignError
-from aag_cad.export.dxf_blanks import hole_groups, hole_kinds, is_upper, laying_lines, outline_corners, spread
+from aag_cad.export.dxf_blanks import hole_kinds, is_upper, joint_names, laying_lines, outline_corners, spread
 from aag_cad.files import write_bytes
 from aag_cad.parts.model import Blank, Gridshell, Hole, Timber
 from aag_cad.resources import template
@@ -60,7 +60,7 @@ _LINE = 3.6
 _LINE_LENGTH = 120
 _HEAD = 8.0
 _FOOT = 12.0
-_LABEL_GAP = 3.6
+_LABEL_PITCH = 8.5
 
 
 def _reach(hole: Hole) -> float:
@@ -88,13 +88,13 @@ def part_stations(blank: Blank, paper: Paper) -> list[float]:
     return [0.0, *cuts, blank.length]
 
 
-def _labels(blank: Blank, first: float, last: float, upper: bool) -> list[dict[str, Any]]:
-    """Return the station texts of the holes of one side that lie in a part, with their places."""
-    holes = [hole for hole in blank.holes if is_upper(hole) == upper and first <= hole.station < last]
-    places = spread([hole.station for hole in holes], _LABEL_GAP)
+def _labels(named: Sequence[tuple[Hole, tuple[str, ...]]], upper: bool) -> list[dict[str, Any]]:
+    """Return the texts of the holes of one side of a part, with their places: station, then joints, line by line."""
+    chosen = [(hole, names) for hole, names in named if is_upper(hole) == upper]
+    places = spread([hole.station for hole, _ in chosen], _LABEL_PITCH)
     return [
-        {"at": hole.station, "place": place, "text": f"{hole.station:.1f}"}
-        for hole, place in zip(holes, places, strict=True)
+        {"at": hole.station, "place": place, "station": f"{hole.station:.1f}", "joints": list(names)}
+        for place, (hole, names) in zip(places, chosen, strict=True)
     ]
 
 
@@ -106,7 +106,11 @@ def _strip(
     half, first, last = blank.section.width / 2.0, stations[number], stations[number + 1]
     begins, ends = number == 0, number == len(stations) - 2
     low, high = first - (0.0 if begins else overlap), last + (0.0 if ends else overlap)
-    names = [(run, blank.holes[run.holes[-1]]) for run in hole_groups(joints)]
+    named = [
+        (hole, joint_names(marks))
+        for hole, marks in zip(blank.holes, joints, strict=True)
+        if first <= hole.station < last
+    ]
     return {
         "number": number + 1,
         "first": first,
@@ -121,13 +125,8 @@ def _strip(
             for hole in blank.holes
             if low + _reach(hole) <= hole.station <= high - _reach(hole)
         ],
-        "joints": [
-            {"x": hole.station + _reach(hole) + 6.0, "name": run.name}
-            for run, hole in names
-            if first <= hole.station < last
-        ],
-        "upper": _labels(blank, first, last, upper=True),
-        "lower": _labels(blank, first, last, upper=False),
+        "upper": _labels(named, upper=True),
+        "lower": _labels(named, upper=False),
         "metres": [k * MM_PER_M for k in range(1, math.ceil(last / MM_PER_M)) if first <= k * MM_PER_M < last],
     }
 

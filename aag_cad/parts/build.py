@@ -15,7 +15,7 @@ from aag_cad.geometry.patches import turn
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork
 from aag_cad.parts.blades import BladeJoint, blade_joints, own_sides
 from aag_cad.parts.clearance import Obstacle, near_parts, obstacles
-from aag_cad.parts.feet import foot_joint
+from aag_cad.parts.feet import foot_joints
 from aag_cad.parts.joints import BuiltJoint, block_joint, node_joint
 from aag_cad.parts.marks import Mark
 from aag_cad.parts.members import (
@@ -100,7 +100,12 @@ def _end_joints(
     design: Design, network: CurveNetwork, marked: list[tuple[Mark, Crossing]], among: list[Obstacle]
 ) -> list[BuiltJoint]:
     """Return the joints at the ends of the flat planks: feet, and straps at the top."""
-    feet = [foot_joint(design, network, mark, crossing) for mark, crossing in marked if crossing.kind == "foot"]
+    feet = [
+        joint
+        for mark, crossing in marked
+        if crossing.kind == "foot"
+        for joint in foot_joints(design, network, mark, crossing)
+    ]
     straps = [
         strap_joint(design, network, mark, crossing, among) for mark, crossing in marked if crossing.kind == "ridge"
     ]

@@ -55,6 +55,11 @@ def sheet_height(design: Design) -> float:
     return beam_face(design) + facade.mullion[1] + facade.seal + facade.sheet_thickness / 2.0
 
 
+def strip_neighbours(design: Design, index: int) -> tuple[int, int]:
+    """Return the numbers of the geodesics under the left and the right edge of a strip."""
+    return index, index % design.pattern.geodesics + 1 if design.closed else index + 1
+
+
 def _over_foot(design: Design) -> Limit:
     lowest = design.bottom_height + design.facade.foot_clearance
     return lambda points: points[:, 2] - lowest

@@ -94,7 +94,9 @@ def _rod(design: Design, site: _Site) -> Rod:
         + (z - supports.shoe_thickness / 2.0 - carries) * np.array([0.0, 0.0, 1.0])
     )
     frame = Frame(vector(at), site.frame.x, site.frame.y, site.frame.z)
-    return threaded_rod(f"{site.mark}-T1", supports.rod_diameter, length, (carries, presses), frame)
+    return threaded_rod(
+        f"{Mark(site.mark.shell, 'C', site.mark.index)}-T1", supports.rod_diameter, length, (carries, presses), frame
+    )
 
 
 def _upright(design: Design, site: _Site) -> tuple[Floats, Floats]:
@@ -162,7 +164,8 @@ def _bolt_places(design: Design, site: _Site) -> list[tuple[float, float, CurveI
     frames = frames_at(site.geodesic.curve, np.array([foot]))
     lean = float((site.beam @ frames.tangent[0]) * (site.beam @ frames.binormal[0]))
     turn = -1.0 if lean > 0.0 else 1.0
-    return [(own, y, geodesic), (own, -y, geodesic), (foot + up, turn * y, edge), (foot - up, -turn * y, edge)]
+    inner = min(y, up)
+    return [(own, inner, geodesic), (own, -inner, geodesic), (foot + up, turn * y, edge), (foot - up, -turn * y, edge)]
 
 
 def _bolts(design: Design, site: _Site) -> tuple[list[Bolt], list[Drilling]]:
@@ -187,8 +190,8 @@ def _bolts(design: Design, site: _Site) -> tuple[list[Bolt], list[Drilling]]:
     return bolts, drillings
 
 
-def foot_joint(design: Design, network: CurveNetwork, mark: Mark, crossing: Crossing) -> BuiltJoint:
-    """Return a foot: shoe with four bolts, threaded rod and concrete block; DesignError where it has no room.
+def foot_joints(design: Design, network: CurveNetwork, mark: Mark, crossing: Crossing) -> list[BuiltJoint]:
+    """Return the two joints of a foot: planks in a shoe, shoe on a concrete block; DesignError where they have no room.
 
     The shoe lies on the side of the planks that the crossing beam leaves free.
     """
@@ -201,7 +204,7 @@ def foot_joint(design: Design, network: CurveNetwork, mark: Mark, crossing: Cros
         block, Frame(vector(top), *(site.frame.x, site.frame.y, site.frame.z)), *design.supports.block_size
     )
     bolts, drillings = _bolts(design, site)
-    members = (*(curve_mark(mark.shell, curve) for curve in crossing.curves), shoe.mark, footing.mark)
-    fasteners = (*(bolt.mark for bolt in bolts), rod.mark)
-    joint = Joint(str(mark), "foot", crossing.point, crossing.normal, members, fasteners)
-    return BuiltJoint(joint, (shoe, rod, footing, *bolts), tuple(drillings))
+    members = (*(curve_mark(mark.shell, curve) for curve in crossing.curves), shoe.mark)
+    bolted = Joint(str(mark), "foot", crossing.point, crossing.normal, members, tuple(bolt.mark for bolt in bolts))
+    stood = Joint(block, "footing", footing.frame.origin, footing.frame.z, (shoe.mark, footing.mark), (rod.mark,))
+    return [BuiltJoint(bolted, (shoe, *bolts), tuple(drillings)), BuiltJoint(stood, (rod, footing), ())]

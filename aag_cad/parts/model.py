@@ -14,7 +14,7 @@ from aag_cad.units import Vector
 
 SCHEMA_VERSION = 2
 
-JointKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "ridge", "blade", "cover"]
+JointKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "footing", "ridge", "blade", "cover"]
 HoleUse: TypeAlias = Literal["bolt", "screw"]
 
 
@@ -300,8 +300,9 @@ class Joint:
     """What meets where: the members joined (planks, studs, blocks, bars, plates) and the fasteners, by mark.
 
     AA: two beams on a stud; AG: a geodesic on a coupling block of a beam; boundary: an edge plank on such a block;
-    foot: the end of a geodesic, the bottom plank, shoe and footing; ridge: the end of a geodesic at an edge plank, by
-    a strap; blade: two shells at the ridge; cover: strips between mullion and clamping bar on a coupling block.
+    foot: the end of a geodesic and the bottom plank in a shoe; footing: a shoe on its concrete block; ridge: the end
+    of a geodesic at an edge plank, by a strap; blade: two shells at the ridge; cover: strips between mullion and
+    clamping bar on a coupling block.
     """
 
     mark: str

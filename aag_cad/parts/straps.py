@@ -58,7 +58,7 @@ def _geodesic_run(design: Design, geodesic: NetworkCurve, crossing: Crossing) ->
 
 def _crown_run(design: Design, curves: dict[CurveId, NetworkCurve], crossing: Crossing) -> _Run:
     """Return the straight line between two ridge planks near the ends at which they meet, two bolts in each."""
-    half = 2.5 * design.joints.bolt_diameter
+    half = 3.0 * design.joints.bolt_diameter
     ends = []
     for curve in (curves[name] for name in crossing.curves):
         nearer_start = crossing.stations[0] - curve.start < curve.end - crossing.stations[0]

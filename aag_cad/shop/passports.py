@@ -49,8 +49,9 @@ class Passport:
     """What is known of one plank when it is taken down; mm, rad/mm, N/mm2, from the model and not measured.
 
     Utilisations are by the characteristic strengths f_m and f_v. ``smallest_radius`` is infinite for a plank that
-    stays straight. ``clear`` lists the stretches without holes, the longest first. The set that creep leaves is not
-    known before the plank is measured, so there is no figure for it.
+    stays straight; its station and that of the largest twist are the first within a thousandth of them. ``clear`` lists
+    the stretches without holes, the longest first. The set that creep leaves is not known before the plank is measured,
+    so there is no figure for it.
     """
 
     mark: str
@@ -104,6 +105,13 @@ def stock_origin(section: CrossSection) -> str:
     return f"half of a board {2.0 * section.thickness + SAW_KERF:g} x {section.width:g} mm, split in two"
 
 
+def _first_peak(stations: Floats, values: Floats) -> float:
+    """Return the first station at which the values come within a thousandth of their largest size."""
+    sizes = np.abs(values)
+    # On a plank of one curvature the very largest is a matter of rounding.
+    return float(stations[np.argmax(sizes >= 0.999 * sizes.max())])
+
+
 def passport(plank: Plank, timber: Timber, design: str, *, service_life_years: float = SERVICE_LIFE_YEARS) -> Passport:
     """Return the passport of a plank.
 
@@ -127,9 +135,9 @@ def passport(plank: Plank, timber: Timber, design: str, *, service_life_years: f
         holes=plank.blank.holes,
         service_life_years=service_life_years,
         smallest_radius=smallest_radius(plank),
-        smallest_radius_station=float(strain.stations[np.argmax(np.abs(strain.bending))]),
+        smallest_radius_station=_first_peak(strain.stations, strain.bending),
         largest_twist=largest_twist(plank),
-        largest_twist_station=float(strain.stations[np.argmax(np.abs(strain.twist))]),
+        largest_twist_station=_first_peak(strain.stations, strain.twist),
         bending_stress=stress.combined,
         bending_utilisation=stress.combined / timber.bending_strength,
         shear_stress=stress.torsion,

@@ -1,9 +1,9 @@
 """Cutting stock: which boards to buy and what is cut from each, with the least length bought, and the proof of it.
 
-A board is cut to length first and then split, so each cut of a board gives ``planks_per_board`` pieces; the shorter ones
-are cut back to their own length. Sorted by length, the k-th longest cut can never be shorter than piece number
-(k - 1) planks_per_board + 1; grouping neighbours in that order reaches this for every k, so it costs nothing, and what
-is left is the cutting-stock problem of Gilmore and Gomory (1961) over several stock lengths.
+A board is cut to length first and then split, so each cut of a board gives ``planks_per_board`` pieces; the shorter
+ones are cut back to their own length. Sorted by length, the k-th longest cut can never be shorter than piece number
+(k - 1) planks_per_board + 1. Grouping neighbours in that order reaches this for every k, so no other grouping needs
+less, and what is left is the cutting-stock problem of Gilmore and Gomory (1961) over several stock lengths.
 """
 
 import math
@@ -18,8 +18,11 @@ from scipy.sparse import csr_array
 
 from aag_cad.units import Floats
 
-_NODES = 2_000
+# Limits of work and not of time: a plan must not depend on the speed of the machine.
+_BRANCHES = 300_000
+_COLUMNS_AT_A_TIME = 24
 _PATTERNS = 20_000
+_NODES = 2_000
 _SLACK = 1e-7
 
 Pattern: TypeAlias = tuple[int, ...]
@@ -84,7 +87,7 @@ class Board:
 
 @dataclass(frozen=True)
 class CuttingPlan:
-    """Boards to buy, lengths in mm: ``bound`` is a lower bound of any plan, ``relaxation`` that of the linear programme.
+    """Boards to buy, lengths in mm; no plan buys less than ``bound``, ``relaxation`` is that of the linear programme.
 
     ``first_fit_decreasing`` is what the usual rule of thumb would buy. ``refused`` pieces are longer than every stock.
     """
@@ -186,39 +189,46 @@ def _first_fit_decreasing(task: _Task) -> list[Column]:
     return [(tuple(board), _shortest_stock(task, tuple(board))) for board in boards]
 
 
-def _best_values(values: Floats, task: _Task) -> Floats:
-    """Return what pieces d and later are worth at most in a room c, (n + 1, room + 1): a bounded knapsack."""
-    best = np.zeros((len(values) + 1, task.room[-1] + 1))
-    for d in range(len(values) - 1, -1, -1):
-        best[d] = best[d + 1]
-        size = task.sizes[d]
-        for count in range(1, min(task.demand[d], task.room[-1] // size) + 1):
-            filled = best[d + 1, : -count * size] + count * values[d]
-            np.maximum(best[d, count * size :], filled, out=best[d, count * size :])
-    return best
+def _by_rate(values: Floats, task: _Task) -> list[int]:
+    """Return the pieces that are worth anything, best value for their length first."""
+    return [int(i) for i in np.argsort(-values / np.array(task.sizes), kind="stable") if values[i] > 0.0]
 
 
-def _patterns_worth(
-    values: Floats, best: Floats, task: _Task, room: int, worth: float, enough: int
-) -> tuple[list[Pattern], bool]:
+def _divisible_worth(values: Floats, task: _Task, room: int) -> float:
+    """Return what a room would be worth if pieces could be cut through: no pattern is worth more (Dantzig 1957)."""
+    worth, left = 0.0, room
+    for i in _by_rate(values, task):
+        filled = min(left, task.demand[i] * task.sizes[i])
+        worth += values[i] * filled / task.sizes[i]
+        left -= filled
+    return worth
+
+
+def _patterns_worth(values: Floats, task: _Task, room: int, worth: float, enough: int) -> tuple[list[Pattern], bool]:
     """Return patterns that fit into a room and are worth more than a value, and whether these are all of them.
 
-    Depth first; as ``best`` is known of every rest, each branch that is entered ends in a pattern.
+    Depth first; a branch ends where even its rest, filled without gaps at the next best rate, is worth too little. The
+    search stops at ``enough`` patterns, or after ``_BRANCHES``.
     """
+    order = _by_rate(values, task)
     found: list[Pattern] = []
     counts = [0] * len(task.sizes)
+    branches = 0
 
     def search(depth: int, left: int, value: float) -> bool:
-        if depth == len(counts):
-            found.append(tuple(counts))
-            return len(found) < enough
-        for count in range(min(task.demand[depth], left // task.sizes[depth]), -1, -1):
-            rest, total = left - count * task.sizes[depth], value + count * values[depth]
-            if total + best[depth + 1, rest] > worth:
-                counts[depth] = count
-                if not search(depth + 1, rest, total):
-                    return False
-        counts[depth] = 0
+        nonlocal branches
+        branches += 1
+        if depth == len(order):
+            if value > worth:
+                found.append(tuple(counts))
+            return len(found) < enough and branches < _BRANCHES
+        i = order[depth]
+        if value + left * values[i] / task.sizes[i] <= worth:
+            return branches < _BRANCHES
+        for count in range(min(task.demand[i], left // task.sizes[i]), -1, -1):
+            counts[i] = count
+            if not search(depth + 1, left - count * task.sizes[i], value + count * values[i]):
+                return False
         return True
 
     return found, search(0, room, 0.0)
@@ -229,24 +239,27 @@ def _matrix(columns: Sequence[Column]) -> csr_array:
 
 
 def _relaxation(task: _Task, columns: list[Column]) -> tuple[float, Floats]:
-    """Return the least bought in the linear programme over all patterns, in steps, and its duals (n,).
+    """Return a lower bound of what any plan buys, in steps, and the duals (n,) that prove it.
 
-    Column generation (Gilmore and Gomory 1961): it ends when no pattern is worth more than its stock. New patterns are
-    added to ``columns``.
+    Column generation (Gilmore and Gomory 1961); new patterns are added to ``columns``. It ends when no pattern is worth
+    more than its stock: the bound is that of the linear programme over all patterns. Where the search for one has to be
+    broken off, the duals are scaled until none can be (Farley 1990).
     """
+    known = set(columns)
     while True:
         costs = [task.stock[i] / task.step for _, i in columns]
         answer = linprog(costs, A_ub=-_matrix(columns), b_ub=-np.array(task.demand), method="highs")
         duals = np.maximum(0.0, -np.asarray(answer.ineqlin.marginals, dtype=np.float64))
-        best = _best_values(duals, task)
         fresh: list[Column] = []
+        excess = 1.0
         for i, (stock, room) in enumerate(zip(task.stock, task.room, strict=True)):
-            if best[0, room] > stock / task.step + _SLACK:
-                worth = best[0, room] - _SLACK / 2.0
-                fresh += [(pattern, i) for pattern in _patterns_worth(duals, best, task, room, worth, 1)[0]]
-        fresh = [column for column in fresh if column not in columns]
+            patterns, complete = _patterns_worth(duals, task, room, stock / task.step + _SLACK, _COLUMNS_AT_A_TIME)
+            fresh += [(pattern, i) for pattern in patterns if (pattern, i) not in known]
+            if not complete:
+                excess = max(excess, _divisible_worth(duals, task, room) * task.step / stock)
         if not fresh:
-            return float(answer.fun), duals
+            return float(answer.fun) / excess, duals / excess
+        known.update(fresh)
         columns += fresh
 
 
@@ -258,13 +271,12 @@ def _least_bought(task: _Task, columns: Sequence[Column], lower: int) -> tuple[l
     costs = np.array([[task.stock[i] / task.step for _, i in columns]])
     answer = milp(
         costs[0],
-        integrality=np.ones(len(columns)),
+        integrality=np.ones(len(columns), dtype=np.int64),
         bounds=Bounds(0.0, np.inf),
         constraints=(
             LinearConstraint(_matrix(columns), np.array(task.demand), np.inf),
             LinearConstraint(csr_array(costs), lower, np.inf),
         ),
-        # A limit of nodes and not of seconds: the plan must not depend on the speed of the machine.
         options={"mip_rel_gap": 0.0, "node_limit": _NODES},
     )
     if answer.x is None:
@@ -296,10 +308,10 @@ def _solved(task: _Task) -> tuple[list[Column], int, float, int]:
     if _bought(task, best) > lower:
         gap = _bought(task, best) - 1.0 - relaxed
         near: set[Column] = set(best)
-        complete, values = True, _best_values(duals, task)
+        complete = True
         for i, (stock, room) in enumerate(zip(task.stock, task.room, strict=True)):
             worth = stock / task.step - gap - 1e-6
-            patterns, ended = _patterns_worth(duals, values, task, room, worth, _PATTERNS)
+            patterns, ended = _patterns_worth(duals, task, room, worth, _PATTERNS)
             near.update((pattern, i) for pattern in patterns if any(pattern))
             complete = complete and ended
         second, solved = _least_bought(task, sorted(near), lower)

@@ -90,15 +90,15 @@ def test_radius_and_twist_are_those_of_the_part_list(gridshell: Gridshell, held:
 
 
 def test_a_plank_is_bent_and_twisted_most_where_its_passport_says(shell: Shell, gridshell: Gridshell) -> None:
-    """1e-3: both are sampled, the passport every 20 mm, and change by less from one sample to the next."""
+    """2e-3: the passport names the first station within 1e-3 of the largest, and looks every 20 mm only."""
     for plank in shell.planks[::5]:
         each = passport(plank, gridshell.timber, "vault")
         fine = strain_along(plank, 2.0)
         bending = np.interp(each.smallest_radius_station, fine.stations, np.abs(fine.bending))
         twist = np.interp(each.largest_twist_station, fine.stations, np.abs(fine.twist))
-        assert bending == pytest.approx(np.abs(fine.bending).max(), rel=1e-3)
-        assert 1.0 / bending == pytest.approx(each.smallest_radius, rel=1e-3)
-        assert twist == pytest.approx(np.abs(fine.twist).max(), rel=1e-3, abs=1e-9)
+        assert bending == pytest.approx(np.abs(fine.bending).max(), rel=2e-3)
+        assert 1.0 / bending == pytest.approx(each.smallest_radius, rel=2e-3)
+        assert twist == pytest.approx(np.abs(fine.twist).max(), rel=2e-3, abs=1e-9)
 
 
 @pytest.mark.parametrize("family", ["A1", "A2", "G"])
@@ -131,6 +131,10 @@ def test_a_plank_bent_to_the_smallest_radius_uses_the_strength_of_ash_up() -> No
     assert each.bending_stress == pytest.approx(14000.0 * 12.0 / 3400.0, rel=1e-4)
     assert each.bending_utilisation == pytest.approx(0.988, abs=1e-3)
     assert each.shear_utilisation < 1e-6
+
+
+def test_a_plank_of_one_curvature_is_bent_to_it_from_its_start() -> None:
+    assert passport(hoop(5100.0, 3000.0), ASH, "hoop").smallest_radius_station == 0.0
 
 
 def test_stresses_are_those_of_the_check_of_lamellas(shell: Shell, gridshell: Gridshell) -> None:
