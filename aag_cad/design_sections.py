@@ -219,6 +219,9 @@ class Facade(Section):
     foot_clearance: Number = Field(20.0, description="of sheets and bars over the ground line of the surface")
     mullion: tuple[Positive, Positive] = Field((50.0, 3.0), description="width and thickness of the bar under them")
     clamp: tuple[Positive, Positive] = Field((50.0, 2.0), description="width and thickness of the clamping bar")
+    support_spacing: Positive = Field(
+        800.0, description="of the bars at most; where outer beams are farther apart, blocks on the geodesic carry them"
+    )
     screw_diameter: Positive = 4.0
     screw_hole: Positive = Field(5.0, description="in mullion and clamping bar")
     screw_length: Positive = 45.0
@@ -247,7 +250,7 @@ class Supports(Section):
     block_size: tuple[Positive, Positive, Positive]
     adjustment: Positive = Field(20.0, description="mm that a shoe can be set up or down on its threaded rod")
     shoe_width: Positive = 90.0
-    shoe_thickness: Positive = 8.0
+    shoe_thickness: Positive = 6.0
     rod_diameter: Literal[12, 16, 20] = 16
     wind_suction: NotNegative = Field(0.5, description="kN/m2, characteristic, upwards over the plan area")
     snow: NotNegative = Field(0.75, description="kN/m2, characteristic, on the plan area")

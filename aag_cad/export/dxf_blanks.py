@@ -258,7 +258,7 @@ def blank_drawing(group: DrillGroup, joints: Sequence[Sequence[str]], title: str
     """Return the drawing of a drilling group; ``joints`` are the joints that each hole of the master serves."""
     blank = group.master.blank
     edge = blank.section.width / 2.0
-    named = [(hole, " / ".join(joint_names(marks))) for hole, marks in zip(blank.holes, joints, strict=True)]
+    named = [(hole, "  ".join(joint_names(marks))) for hole, marks in zip(blank.holes, joints, strict=True)]
     lower = any(not is_upper(hole) for hole in blank.holes)
     reach = _RUNNING + 20.0 * _CHARACTER * _SMALL
     items: list[Item] = [Polyline(OUTLINE, outline_corners(blank)), *_hole_items(blank), *_mark_items(group)]

@@ -145,9 +145,9 @@ def _ordinate_table(flat: FlatPattern, names: Sequence[str], low: float) -> list
         Text(TITLE, "distance of the edge from the straight line between its corners, inwards", (0.0, low), _SMALL)
     ]
     for row, (name, edge, inward) in enumerate(zip(names, (flat.left, flat.right), (1.0, -1.0), strict=True)):
-        y = low - _ROW * _SMALL * (1.0 + 2.0 * row)
+        y = low - _ROW * _SMALL * (1.0 + 2.5 * row)
         for place, text in ((y, "along it"), (y - _ROW * _SMALL, f"edge on {name}")):
-            items.append(Text(TITLE, text, (-30.0, place), _SMALL, "right"))
+            items.append(Text(TITLE, text, (-60.0, place), _SMALL, "right"))
         ordinates = edge_ordinates(edge)
         if len(ordinates) > 2 and ordinates[-1][0] - ordinates[-2][0] < 6.0 * _SMALL:
             ordinates.pop(-2)
@@ -160,8 +160,11 @@ def _ordinate_table(flat: FlatPattern, names: Sequence[str], low: float) -> list
 
 def _corner_text(flat: FlatPattern) -> str:
     corners = (("foot", flat.lower), ("top", flat.upper))
-    texts = [f"{name} " + ", ".join(f"({x:.1f}, {y + 0.0:.1f})" for x, y in points) for name, points in corners]
-    return "corners (along, across from the middle line), from left to right: " + "; ".join(texts)
+    texts = [
+        f"{name} " + ", ".join(f"({round(x, 1) + 0.0:.1f}, {round(y, 1) + 0.0:.1f})" for x, y in points.tolist())
+        for name, points in corners
+    ]
+    return "corners (along, across from the middle line), the lower edge first: " + "; ".join(texts)
 
 
 def _title_lines(pattern: StripPattern, design: Design, title: str) -> tuple[str, ...]:

@@ -1,8 +1,10 @@
 """The cover of a shell: aluminium bars on the geodesics, bent sheets between them, screwed to the coupling blocks."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import TypeAlias, TypeVar
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 from scipy.optimize import brentq
@@ -14,34 +16,68 @@ from aag_cad.geometry.developable import ruled_edges, shared_range
 from aag_cad.geometry.framed import SAMPLE_SPACING, FramedCurve, frames_at, nearest_station, offset_curve
 from aag_cad.network.model import CurveNetwork, NetworkCurve
 from aag_cad.network.ridge import ridge_distance
+from aag_cad.parts.clearance import Obstacle, is_free, obstacles, placed_points
 from aag_cad.parts.fasteners import axis_frame, wood_screw
 from aag_cad.parts.forming import axis_piercings
 from aag_cad.parts.marks import Mark, parse_mark
-from aag_cad.parts.members import curve_mark
-from aag_cad.parts.model import Blank, ClampingBar, CrossSection, Hole, Joint, Mullion, Screw, Shell, Strip
-from aag_cad.parts.strips import Sheet, rulings_through, sheet_of
+from aag_cad.parts.members import Drilling, curve_mark, drilled, grouped, with_joints
+from aag_cad.parts.model import (
+    Blank,
+    ClampingBar,
+    CouplingBlock,
+    CrossSection,
+    Frame,
+    Hole,
+    Joint,
+    Mullion,
+    Plank,
+    Screw,
+    Shell,
+    Strip,
+)
+from aag_cad.parts.strips import Limit, Sheet, along_cut, depth_inside, sheet_of
 from aag_cad.units import Floats, vector
 
 # Four samples past the end of a curve its spline is off by about 0.02 mm, and slanting cuts leave little sheet there.
 _REACH = 4.0 * SAMPLE_SPACING
-_ALONG_CUT = 33
 _SAFE = 1e-3
 _PASSES = 20
+# How far a bar may reach past its last support, as a share of the spacing.
+FREE_END = 0.75
+# A block on the geodesic: length along it, its screws from the middle, and from the plank's end to its middle (12 d).
+_STAND_OFF_LENGTH = 90.0
+_STAND_OFF_SCREWS = 12.0
+_STAND_OFF_END = 75.0
+_STEP = 10.0
 
-# How far points (n, 3) lie inside a limit, mm, (n,).
-Limit: TypeAlias = Callable[[Floats], Floats]
 _Bar = TypeVar("_Bar", Mullion, ClampingBar)
 
 
 @dataclass(frozen=True)
 class FacadePieces:
-    """What covers one shell, in shell coordinates, each sorted by mark; all empty without a cover."""
+    """What covers one shell, in shell coordinates, each sorted by mark; all empty without a cover.
+
+    ``blocks`` stand on geodesics where outer beams are far apart; ``drillings`` are their screw holes in the planks.
+    """
 
     mullions: tuple[Mullion, ...] = ()
     strips: tuple[Strip, ...] = ()
     clamps: tuple[ClampingBar, ...] = ()
     screws: tuple[Screw, ...] = ()
+    blocks: tuple[CouplingBlock, ...] = ()
     joints: tuple[Joint, ...] = ()
+    drillings: tuple[Drilling, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A geodesic with its plank, the bars over it, and the strips beside it."""
+
+    item: NetworkCurve
+    plank: Plank
+    mullion: Mullion
+    clamp: ClampingBar
+    strips: tuple[str, ...]
 
 
 def beam_face(design: Design) -> float:
@@ -122,25 +158,11 @@ def _bars(design: Design, items: list[NetworkCurve]) -> tuple[list[Mullion], lis
     return mullions, clamps
 
 
-def _depth_at(sheet: Sheet, limit: Limit, u: Floats, v: Floats) -> Floats:
-    """Return how far the thinner of both faces lies inside a limit at rulings u and fractions v, (n,)."""
-    half = sheet.thickness / 2.0
-    return np.minimum(limit(sheet.formed(u, v, -half)), limit(sheet.formed(u, v, half)))
-
-
 def _corner(sheet: Sheet, limit: Limit, v: float, outer: float, key: str, mark: str) -> float:
     def inside(u: float) -> float:
-        return float(_depth_at(sheet, limit, np.array([u]), np.array([v]))[0])
+        return float(depth_inside(sheet, limit, np.array([u]), np.array([v]))[0])
 
     return _where(inside, outer, 0.5, key, mark)
-
-
-def _along_cut(sheet: Sheet, cut: tuple[float, ...]) -> tuple[Floats, Floats]:
-    """Return rulings and fractions, each (n,), of points along a cut that is straight in the flat pattern."""
-    corners = sheet.flattened(np.array(cut), np.linspace(0.0, 1.0, len(cut)))
-    t = np.linspace(0.0, len(cut) - 1.0, (len(cut) - 1) * (_ALONG_CUT - 1) + 1)
-    points = np.column_stack([np.interp(t, np.arange(len(cut)), corners[:, axis]) for axis in (0, 1)])
-    return rulings_through(sheet, points)
 
 
 def _upper_cut(design: Design, sheet: Sheet, pair: tuple[NetworkCurve, NetworkCurve], mark: str) -> tuple[float, ...]:
@@ -158,7 +180,7 @@ def _upper_cut(design: Design, sheet: Sheet, pair: tuple[NetworkCurve, NetworkCu
         cut = tuple(_corner(sheet, limit, v, 1.0, key, mark) for v, limit in zip(fractions, limits, strict=True))
         if level:
             return cut
-        deficit = -float(_depth_at(sheet, _below_top(design, pair[0], clearance), *_along_cut(sheet, cut)).min())
+        deficit = -float(depth_inside(sheet, _below_top(design, pair[0], clearance), *along_cut(sheet, cut)).min())
         if deficit <= 0.0:
             return cut
         aim += deficit + _SAFE
@@ -196,60 +218,205 @@ def _with_hole(bar: _Bar, joint: str, screw: Screw, diameter: float) -> _Bar:
     return replace(bar, blank=replace(bar.blank, holes=holes))
 
 
-def _block_joints(shell: Shell, item: NetworkCurve) -> list[Joint]:
-    """Return the joints of a geodesic with the outer beams, from its foot upwards."""
-    plank = curve_mark(1, item.id)
-    joints = [
-        joint
-        for joint in shell.joints
-        if joint.kind == "AG" and plank in joint.members and any(parse_mark(m).family == "A2" for m in joint.members)
-    ]
+def _stations_on(item: NetworkCurve, joints: Sequence[Joint]) -> list[float]:
     if not joints:
-        raise DesignError(f"facade.cover: no outer beam crosses {plank} under its mullion; set it to false")
+        return []
     points = np.array([joint.point for joint in joints])
-    guess = item.curve.stations[np.argmin(np.linalg.norm(points[:, None] - item.curve.points[None], axis=2), axis=1)]
-    stations = nearest_station(item.curve, points, guess)
-    return [joints[i] for i in np.argsort(stations, kind="stable")]
+    nearest = np.argmin(np.linalg.norm(points[:, None] - item.curve.points[None], axis=2), axis=1)
+    return [float(s) for s in nearest_station(item.curve, points, item.curve.stations[nearest])]
 
 
-def _cover_joint(design: Design, mark: Mark, at: Joint, members: tuple[str, ...]) -> tuple[Joint, Screw]:
-    """Return the joint of bars and sheets on the coupling block of another joint, with its screw from outside."""
+def _bar_ends(line: _Line) -> list[float]:
+    """Return the stations of the geodesic under both ends of its mullion."""
+    points = line.mullion.curve.points[[0, -1]]
+    return [float(s) for s in nearest_station(line.item.curve, points, np.array([line.item.start, line.item.end]))]
+
+
+def _wanted_stations(design: Design, line: _Line, beams: list[float]) -> list[float]:
+    """Return where blocks on the geodesic are due, so that supports are not too far apart.
+
+    ``beams`` are the stations of those that are there.
+    """
+    spacing, (first, last) = design.facade.support_spacing, _bar_ends(line)
+    supports, wanted = sorted(beams), []
+    if not supports or supports[0] - first > FREE_END * spacing:
+        wanted.append(line.item.start + _STAND_OFF_END)
+    if not supports or last - supports[-1] > FREE_END * spacing:
+        wanted.append(line.item.end - _STAND_OFF_END)
+    for a, b in pairwise(sorted([*supports, *wanted])):
+        count = math.ceil((b - a) / spacing)
+        wanted += [a + (b - a) * i / count for i in range(1, count)]
+    return sorted(wanted)
+
+
+def _stand_off(design: Design, mark: str, item: NetworkCurve, station: float) -> CouplingBlock:
+    """Return a block on the outer face of a geodesic, as high and as wide as an outer beam."""
+    frames = frames_at(item.curve, np.array([station]))
+    centre = frames.point[0] + design.layer_offset * frames.normal[0]
+    frame = Frame(vector(centre), vector(frames.tangent[0]), vector(frames.normal[0]), vector(-frames.binormal[0]))
+    across = design.joints.gap + 2.0 * design.timber.thickness
+    return CouplingBlock(mark, frame, _STAND_OFF_LENGTH, design.timber.width, across, ())
+
+
+def _free_station(
+    design: Design, item: NetworkCurve, wanted: float, beams: list[float], among: Sequence[Obstacle]
+) -> float | None:
+    """Return the nearest station where a block on the geodesic is clear of all beams and fittings, or None.
+
+    No beam passes on the other side either, where its screws are driven.
+    """
+    apart = (design.joints.block_length + _STAND_OFF_LENGTH) / 2.0
+    for step in np.arange(0.0, design.facade.support_spacing / 2.0, _STEP).tolist():
+        for station in (wanted + step, wanted - step):
+            inside = item.start + _STAND_OFF_END <= station <= item.end - _STAND_OFF_END
+            if not inside or any(abs(station - beam) < apart for beam in beams):
+                continue
+            if is_free(placed_points(_stand_off(design, "S1-V-001", item, station)), among, 0.0):
+                return float(station)
+    return None
+
+
+def _stand_offs(design: Design, line: _Line, joints: Sequence[Joint], among: Sequence[Obstacle]) -> list[float]:
+    """Return the stations of the blocks on a geodesic that its mullion needs besides the outer beams."""
+    crossings = [joint for joint in joints if joint.kind == "AG" and line.plank.mark in joint.members]
+    own = [joint for joint in crossings if _is_outer(joint)]
+    beams = _stations_on(line.item, crossings)
+    near = [o for o in among if o.part.mark != line.plank.mark]
+    found: list[float] = []
+    for wanted in _wanted_stations(design, line, _stations_on(line.item, own)):
+        station = _free_station(design, line.item, wanted, [*beams, *found], near)
+        if station is not None:
+            found.append(station)
+    return found
+
+
+def _is_outer(joint: Joint) -> bool:
+    return any(parse_mark(member).family == "A2" for member in joint.members)
+
+
+def _stand_off_screws(
+    design: Design, mark: Mark, block: CouplingBlock, plank: str
+) -> tuple[list[Screw], list[Drilling]]:
+    """Return the two screws from inside through a geodesic into a block on it, and the drillings of its plank."""
+    joints, half = design.joints, design.timber.thickness / 2.0
+    up, across = np.array(block.frame.y), np.array(block.frame.z)
+    middle = np.array(block.frame.origin) - design.layer_offset * up
+    screws, drillings = [], []
+    for number, sign in ((2, -1.0), (3, 1.0)):
+        at = middle + sign * _STAND_OFF_SCREWS * across
+        frame = axis_frame(at - half * up, up, across)
+        screws.append(wood_screw(f"{mark}-W{number}", joints.screw_diameter, joints.screw_length, frame))
+        drillings.append(Drilling(plank, vector(at), vector(up), joints.screw_hole, "screw", str(mark)))
+    return screws, drillings
+
+
+def _facade_screw(design: Design, mark: Mark, point: Floats, normal: Floats) -> Screw:
     facade = design.facade
-    normal, point = np.array(at.normal), np.array(at.point)
-    face = point + beam_face(design) * normal
-    side = np.cross(normal, np.array([0.0, 0.0, 1.0]))
-    frame = axis_frame(face + facade.build_up * normal, -normal, side)
-    screw = wood_screw(f"{mark}-W1", facade.screw_diameter, facade.screw_length, frame)
-    block = next(m for m in at.members if parse_mark(m).family == "K")
-    return Joint(str(mark), "cover", vector(face), at.normal, (*members, block), (screw.mark,)), screw
+    head = point + (beam_face(design) + facade.build_up) * normal
+    frame = axis_frame(head, -normal, np.cross(normal, np.array([0.0, 0.0, 1.0])))
+    return wood_screw(f"{mark}-W1", facade.screw_diameter, facade.screw_length, frame)
+
+
+def _fixed_line(
+    design: Design, line: _Line, joints: Sequence[Joint], among: Sequence[Obstacle], first: int
+) -> FacadePieces:
+    """Return the bars of a geodesic, drilled, with their joints numbered upwards from ``first``."""
+    own = [joint for joint in joints if joint.kind == "AG" and line.plank.mark in joint.members and _is_outer(joint)]
+    places: list[tuple[float, Joint | None]] = [*zip(_stations_on(line.item, own), own, strict=True)]
+    places += [(station, None) for station in _stand_offs(design, line, joints, among)]
+    pieces = FacadePieces((line.mullion,), (), (line.clamp,))
+    bars = (line.mullion.mark, line.clamp.mark, *line.strips)
+    for number, (station, at) in enumerate(sorted(places, key=lambda place: place[0]), start=first):
+        mark = Mark(1, "V", number)
+        frames = frames_at(line.item.curve, np.array([station]))
+        point, normal = (frames.point[0], frames.normal[0]) if at is None else (np.array(at.point), np.array(at.normal))
+        screw = _facade_screw(design, mark, point, normal)
+        screws, drillings, members = [screw], [], [*bars]
+        if at is None:
+            block = _stand_off(design, str(mark), line.item, station)
+            more, drillings = _stand_off_screws(design, mark, block, line.plank.mark)
+            screws += more
+            members += [line.plank.mark, block.mark]
+            pieces = replace(pieces, blocks=(*pieces.blocks, block))
+        else:
+            members.append(next(m for m in at.members if parse_mark(m).family == "K"))
+        face = vector(point + beam_face(design) * normal)
+        joint = Joint(str(mark), "cover", face, vector(normal), tuple(members), tuple(s.mark for s in screws))
+        pieces = replace(
+            pieces,
+            mullions=(_with_hole(pieces.mullions[0], joint.mark, screw, design.facade.screw_hole),),
+            clamps=(_with_hole(pieces.clamps[0], joint.mark, screw, design.facade.screw_hole),),
+            screws=(*pieces.screws, *screws),
+            joints=(*pieces.joints, joint),
+            drillings=(*pieces.drillings, *drillings),
+        )
+    return pieces
+
+
+def _lines(design: Design, network: CurveNetwork, shell: Shell) -> tuple[list[_Line], list[Strip]]:
+    items = [item for item in network.curves if item.id.family == "G"]
+    planks = {plank.mark: plank for plank in shell.planks}
+    mullions, clamps = _bars(design, items)
+    by_number = {item.id.number: item for item in items}
+    beside: dict[int, list[str]] = {number: [] for number in by_number}
+    strips = []
+    for number in by_number if design.closed else list(by_number)[:-1]:
+        left, right = strip_neighbours(design, number)
+        strips.append(_strip(design, (by_number[left], by_number[right])))
+        for neighbour in (left, right):
+            beside[neighbour].append(strips[-1].mark)
+    lines = [
+        _Line(item, planks[curve_mark(1, item.id)], mullion, clamp, tuple(sorted(beside[item.id.number])))
+        for item, mullion, clamp in zip(items, mullions, clamps, strict=True)
+    ]
+    return lines, strips
 
 
 def placed_facade(design: Design, network: CurveNetwork, shell: Shell) -> FacadePieces:
-    """Return the cover of the first shell, whose joints and blocks are placed (paper section 3.2, Fig. 8e to g).
+    """Return the cover of the first shell, whose other parts are placed (paper section 3.2, Fig. 8e to g).
 
-    Mullions lie on the outer beams along the geodesics, a sheet on either side of the screws, a clamping bar on top;
-    one screw goes through both bars into every coupling block of an outer beam under them. DesignError or SurfaceError
-    with the key to change where that cannot be built.
+    Mullions lie on the outer beams along the geodesics, a sheet on either side of the screws, a clamping bar on top.
+    One screw goes through both bars into every coupling block of an outer beam under them; where those are too far
+    apart, blocks on the geodesic carry them. DesignError or SurfaceError with the key to change where that cannot be.
     """
     if not design.facade.cover:
         return FacadePieces()
-    items = [item for item in network.curves if item.id.family == "G"]
-    mullions, clamps = _bars(design, items)
-    pairs = list(zip(items, items[1:] + items[:1] if design.closed else items[1:], strict=False))
-    strips = [_strip(design, pair) for pair in pairs]
-    beside: dict[int, list[str]] = {item.id.number: [] for item in items}
-    for (left, right), strip in zip(pairs, strips, strict=True):
-        beside[left.id.number].append(strip.mark)
-        beside[right.id.number].append(strip.mark)
-    joints: list[Joint] = []
-    screws: list[Screw] = []
-    for i, item in enumerate(items):
-        for at in _block_joints(shell, item):
-            mark = Mark(1, "V", len(joints) + 1)
-            members = (mullions[i].mark, clamps[i].mark, *sorted(beside[item.id.number]))
-            joint, screw = _cover_joint(design, mark, at, members)
-            mullions[i] = _with_hole(mullions[i], joint.mark, screw, design.facade.screw_hole)
-            clamps[i] = _with_hole(clamps[i], joint.mark, screw, design.facade.screw_hole)
-            joints.append(joint)
-            screws.append(screw)
-    return FacadePieces(tuple(mullions), tuple(strips), tuple(clamps), tuple(screws), tuple(joints))
+    lines, strips = _lines(design, network, shell)
+    # Nodes are far from geodesics; what is fixed at their own joints, at feet and at the top is not.
+    near = {mark for joint in shell.joints if joint.kind != "AA" for mark in joint.fasteners}
+    bolts = [bolt for bolt in shell.bolts if bolt.mark in near]
+    among = obstacles([*shell.planks, *shell.straps, *shell.shoes, *bolts, *shell.blocks], shell.placement)
+    done: list[FacadePieces] = []
+    for line in lines:
+        first = sum(len(pieces.joints) for pieces in done) + 1
+        done.append(_fixed_line(design, line, shell.joints, among, first))
+    done.append(FacadePieces(strips=tuple(strips)))
+    names = [field.name for field in fields(FacadePieces)]
+    return FacadePieces(**{name: tuple(piece for pieces in done for piece in getattr(pieces, name)) for name in names})
+
+
+def covered(shell: Shell, pieces: FacadePieces) -> Shell:
+    """Return a shell with its cover: the pieces, and their holes and joints in the planks of the geodesics."""
+    by_plank = grouped(pieces.drillings)
+    joints = {joint.mark: np.array(joint.point) for joint in pieces.joints}
+
+    def finished(plank: Plank) -> Plank:
+        wanted = by_plank.get(plank.mark, [])
+        if not wanted:
+            return plank
+        new = drilled(replace(plank, blank=replace(plank.blank, holes=())), wanted).blank.holes
+        holes = sorted([*plank.blank.holes, *new], key=lambda hole: (hole.station, hole.offset))
+        places = with_joints(plank, [(mark, joints[mark]) for mark in sorted({drilling.joint for drilling in wanted})])
+        stations = sorted([*plank.joints, *places], key=lambda joint: (joint.station, joint.joint))
+        return replace(plank, blank=replace(plank.blank, holes=tuple(holes)), joints=tuple(stations))
+
+    return replace(
+        shell,
+        planks=tuple(finished(plank) for plank in shell.planks),
+        blocks=(*shell.blocks, *pieces.blocks),
+        screws=(*shell.screws, *pieces.screws),
+        joints=(*shell.joints, *pieces.joints),
+        mullions=pieces.mullions,
+        strips=pieces.strips,
+        clamps=pieces.clamps,
+    )

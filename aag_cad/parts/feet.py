@@ -157,7 +157,7 @@ def _bolt_places(design: Design, site: _Site) -> list[tuple[float, float, CurveI
     """
     geodesic, edge = site.crossing.curves
     own, _top = _bolt_stations(design, site)
-    clear = 3.0 * design.joints.bolt_diameter
+    clear = 3.0 * design.joints.bolt_diameter + 0.5
     y = design.supports.shoe_width / 2.0 - 15.0
     up = design.timber.width / 2.0 - clear
     foot = site.crossing.stations[0]

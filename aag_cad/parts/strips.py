@@ -1,8 +1,10 @@
 """The geometry of a strip: the formed sheet, its flat pattern, its mesh, and how deep points lie inside it."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
@@ -19,7 +21,11 @@ _FINE_PER_SAMPLE = 8
 _ON_CUT = 1e-6
 _NARROW = 1e-6
 _SEARCH = 129
+_ALONG_CUT = 33
 _NEWTON_STEPS = 12
+
+# How far points (n, 3) lie inside a limit, mm, (n,).
+Limit: TypeAlias = Callable[[Floats], Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +141,20 @@ def rulings_through(sheet: Sheet, points: Floats) -> tuple[Floats, Floats]:
 
 def _flat_cross(a: Floats, b: Floats) -> Floats:
     return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+
+def depth_inside(sheet: Sheet, limit: Limit, u: Floats, v: Floats) -> Floats:
+    """Return how far the nearer of both faces lies inside a limit at rulings u and fractions v, (n,)."""
+    half = sheet.thickness / 2.0
+    return np.minimum(limit(sheet.formed(u, v, -half)), limit(sheet.formed(u, v, half)))
+
+
+def along_cut(sheet: Sheet, cut: tuple[float, ...]) -> tuple[Floats, Floats]:
+    """Return rulings and fractions, each (n,), of points along a cut that is straight in the flat pattern."""
+    corners = sheet.flattened(np.array(cut), np.linspace(0.0, 1.0, len(cut)))
+    t = np.linspace(0.0, len(cut) - 1.0, (len(cut) - 1) * (_ALONG_CUT - 1) + 1)
+    points = np.column_stack([np.interp(t, np.arange(len(cut)), corners[:, axis]) for axis in (0, 1)])
+    return rulings_through(sheet, points)
 
 
 def _inside_cuts(sheet: Sheet) -> list[tuple[Floats, Floats]]:

@@ -20,7 +20,7 @@ from aag_cad.units import Floats
 
 # Limits of work and not of time: a plan must not depend on the speed of the machine.
 _BRANCHES = 300_000
-_COLUMNS_AT_A_TIME = 24
+_COLUMNS_AT_A_TIME = 6
 _PATTERNS = 20_000
 _NODES = 2_000
 _SLACK = 1e-7

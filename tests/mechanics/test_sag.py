@@ -43,7 +43,7 @@ def layouts(gridshell: Gridshell, pairs: dict[str, CoupledPair]) -> dict[str, tu
 
 
 def test_a_pair_on_stands_at_its_ends_is_a_simply_supported_beam() -> None:
-    """w L^4 / 384 * 5 / E I in the middle, w L^3 / 24 E I at the ends; a load P adds P L^3 / 48 and P L^2 / 16."""
+    """In the middle 5 w L^4 / 384 E I, at the ends w L^3 / 24 E I; a load P adds P L^3 / 48 and P L^2 / 16."""
     length, w = PAIR.length, PAIR.weight
     middle, ends = np.array([length / 2.0]), np.array([0.0, length])
     on_ends = Stands(0.0, 0.0)

@@ -68,7 +68,7 @@ def _linked_beams(bays: Floats, differences: Floats, spacing: float, thickness: 
     load = np.zeros(size)
 
     def dofs(plank: int, bay: int, piece: int) -> tuple[Floats, list[int]]:
-        """Return the matrix (3, 3) from a master's degrees of freedom to those of a point on a plank, and the master's."""
+        """Return the matrix (3, 3) from a master's degrees of freedom to those of a point on a plank, and theirs."""
         link = bay if piece == 0 else bay + 1 if piece == pieces else None
         if link is None:
             start = 3 * (links + (plank * len(bays) + bay) * (pieces - 1) + piece - 1)
@@ -123,8 +123,8 @@ def test_drilled_differences_are_the_planks_distance_times_the_turn_of_the_beam(
 def test_the_vaults_bays_differ_by_0_4_to_2_8_mm(pairs: dict[str, CoupledPair]) -> None:
     """On the surface the difference up to y is 36 cos 30 * 2/3 ln cosh y, whatever the neck's radius.
 
-    The beams that start at the foot have their nodes at y = sqrt(3) (j + 1/2) delta; the layers lie 56 mm under and over
-    the surface, so that the mean of A1 and A2 meets it to 2 percent.
+    The beams that start at the foot have their nodes at y = sqrt(3) (j + 1/2) delta; the layers lie 56 mm under and
+    over the surface, so that the mean of A1 and A2 meets it to 2 percent.
     """
     bays = [abs(bay.difference) for pair in pairs.values() for bay in node_bays(pair)]
     assert min(bays) == pytest.approx(0.38, abs=0.01)
@@ -143,7 +143,7 @@ def test_planks_that_share_no_two_bolted_joints_are_no_pair(gridshell: Gridshell
     beam = first.beams[0]
     left, right = (next(p for p in first.planks if p.mark == mark) for mark in beam.planks)
     bare = replace(right, blank=replace(right.blank, holes=right.blank.holes[:1]))
-    with pytest.raises(NetworkError, match="S1-A1-01: 1 joints .* at least 2"):
+    with pytest.raises(NetworkError, match=r"S1-A1-01: 1 joints .* at least 2"):
         coupled_pair(beam, left, bare)
 
 

@@ -23,7 +23,9 @@ def test_no_two_parts_of_the_vault_reach_a_millimetre_into_each_other(gridshell:
     assert clashes(gridshell, 1.0) == []
 
 
-def test_the_twist_over_a_block_presses_its_corners_into_the_planks_by_less_than_a_millimetre(gridshell: Gridshell, shell: Shell) -> None:
+def test_the_twist_over_a_block_presses_its_corners_into_the_planks_by_less_than_a_millimetre(
+    gridshell: Gridshell, shell: Shell
+) -> None:
     """A flat block of 120 x 100 mm between planks that twist 19.5 deg/m: about 60 * 50 * tau = 1.0 mm at most."""
     found = clashes(_alone(gridshell, shell), 0.75)
     assert found
@@ -50,9 +52,7 @@ def test_a_stud_turned_off_the_planks_bites_into_them(gridshell: Gridshell, shel
     turned = replace(stud.frame, x=vector(cos * x + sin * y), y=vector(cos * y - sin * x))
     studs = tuple(replace(stud, frame=turned) if s is stud else s for s in shell.studs)
     found = [
-        c
-        for c in clashes(_alone(gridshell, replace(shell, studs=studs)), 1.0)
-        if stud.mark in (c.first, c.second)
+        c for c in clashes(_alone(gridshell, replace(shell, studs=studs)), 1.0) if stud.mark in (c.first, c.second)
     ]
     assert len(found) == 4
     assert all(clash.depth == pytest.approx(1.86, abs=0.2) for clash in found)
@@ -72,9 +72,7 @@ def test_a_bolt_is_not_held_against_its_own_joint_but_against_others(gridshell: 
     head = np.array(block.frame.origin) - bolt.grip / 2.0 * np.array(bolt.frame.z)
     moved = replace(bolt, frame=replace(bolt.frame, origin=vector(head)))
     bolts = tuple(moved if b is bolt else b for b in shell.bolts)
-    found = {
-        frozenset((c.first, c.second)) for c in clashes(_alone(gridshell, replace(shell, bolts=bolts)), 1.0)
-    }
+    found = {frozenset((c.first, c.second)) for c in clashes(_alone(gridshell, replace(shell, bolts=bolts)), 1.0)}
     assert {bolt.mark, block.mark} in found
     planks = next(joint.members for joint in shell.joints if joint.mark == "S1-N-040")
     assert not any({bolt.mark, plank} in found for plank in planks)

@@ -1,0 +1,153 @@
+"""Tables for making the coupled beams: what the drilling embeds, stands to sag them on, over-drilled stations."""
+
+import math
+import os
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from aag_cad.files import write_text
+from aag_cad.mechanics.sag import StandLayout, flat_pair, stand_layout
+from aag_cad.mechanics.siblings import (
+    CoupledPair,
+    HoleErrorEffect,
+    SprungShape,
+    coupled_pair,
+    hole_error_effect,
+    node_bays,
+    over_drill_shift,
+    over_drilled,
+    sprung_shape,
+)
+from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, Timber
+
+PREFABRICATION_HEADER = (
+    "beam", "length_mm", "studs", "blocks", "right_minus_left_mm", "least_per_bay_mm", "most_per_bay_mm",
+    "target_sagitta_mm", "sprung_sagitta_mm", "sprung_deviation_mm", "over_drilled_deviation_mm",
+    "sigma_middle_mm", "sigma_end_mm", "sigma_curvature_percent", "locked_force_n",
+    "upper_plank", "overhang_start_mm", "overhang_end_mm", "stand_spacing_mm", "sag_mm", "slope_deg", "added_load_kg",
+    "hole_gap_mm", "largest_hole_gap_mm",
+)  # fmt: skip
+DRILLING_HEADER = (
+    "beam", "joint", "left_offset_mm", "right_offset_mm", "left_mm", "right_mm", "right_minus_left_mm",
+    "left_over_drilled_mm", "right_over_drilled_mm",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Prefabrication:
+    """All that the workshop needs to make one coupled beam."""
+
+    pair: CoupledPair
+    drilled: SprungShape
+    corrected: SprungShape
+    errors: HoleErrorEffect
+    stands: StandLayout
+
+
+def prefabrication_of(shell: Shell, pair: CoupledPair, timber: Timber) -> Prefabrication:
+    """Return what drilling, releasing, over-drilling and sagging give for one beam of a shell."""
+    width = next(plank.blank.section.width for plank in shell.planks if plank.mark in pair.beam.planks)
+    return Prefabrication(
+        pair=pair,
+        drilled=sprung_shape(pair, pair.left, pair.right, timber.modulus, width),
+        corrected=sprung_shape(pair, *over_drilled(pair), timber.modulus, width),
+        errors=hole_error_effect(pair),
+        stands=stand_layout(pair, flat_pair(shell, pair, timber)),
+    )
+
+
+def _paired_planks(gridshell: Gridshell) -> Iterator[tuple[Shell, CoupledPair, Plank, Plank]]:
+    """Yield every beam by mark: its shell, its couplings, its left and right plank."""
+    for shell in sorted(gridshell.shells, key=lambda shell: shell.mark):
+        planks = {plank.mark: plank for plank in shell.planks}
+        for beam in sorted(shell.beams, key=lambda beam: beam.mark):
+            left, right = (planks[mark] for mark in beam.planks)
+            yield shell, coupled_pair(beam, left, right), left, right
+
+
+def prefabrication_row(made: Prefabrication) -> tuple[str, ...]:
+    """Return one line of the prefabrication table, in the order of ``PREFABRICATION_HEADER``.
+
+    Deviations are the largest distances after the best rigid motion; sigmas belong to hole errors of 0.3 mm. A straight
+    beam leaves the share of its curvature empty.
+    """
+    pair, stands = made.pair, made.stands
+    studs = sum(holes > 1 for holes in pair.holes)
+    bays = [bay.difference for bay in node_bays(pair)]
+    difference = pair.right - pair.left
+    differences = (float(difference[-1] - difference[0]), min(bays, key=abs), max(bays, key=abs))
+    share = made.errors.curvature
+    return (
+        pair.beam.mark,
+        f"{pair.beam.curve.length:.1f}",
+        str(studs),
+        str(len(pair.joints) - studs),
+        *(f"{round(figure, 1) + 0.0:.1f}" for figure in differences),
+        f"{made.drilled.target_sagitta:.1f}",
+        f"{made.drilled.sagitta:.1f}",
+        f"{made.drilled.fitted:.1f}",
+        f"{made.corrected.fitted:.1f}",
+        f"{made.errors.middle:.1f}",
+        f"{made.errors.end:.1f}",
+        "" if math.isinf(share) else f"{100.0 * share:.0f}",
+        f"{made.drilled.force:.0f}",
+        stands.upper,
+        f"{stands.stands.start:.0f}",
+        f"{stands.stands.end:.0f}",
+        f"{stands.spacing:.0f}",
+        f"{stands.sag:.0f}",
+        f"{math.degrees(stands.slope):.0f}",
+        f"{stands.added:.1f}",
+        f"{stands.gap:.1f}",
+        f"{stands.largest_gap:.1f}",
+    )
+
+
+def _bolt_holes(plank: Plank) -> dict[str, list[Hole]]:
+    """Return the bolt holes of each joint of a plank, from the lower edge up."""
+    found: dict[str, list[Hole]] = defaultdict(list)
+    for hole in sorted(plank.blank.holes, key=lambda hole: hole.offset):
+        if hole.use == "bolt":
+            found[hole.joint].append(hole)
+    return found
+
+
+def drilling_rows(pair: CoupledPair, left: Plank, right: Plank) -> list[tuple[str, ...]]:
+    """Return one line for every bolt of a beam, both planks side by side, in the order of ``DRILLING_HEADER``.
+
+    The over-drilled stations stand in for the nominal ones if the beam is to spring to its curve by itself; the
+    difference is that of the printed stations.
+    """
+    on_left, on_right = _bolt_holes(left), _bolt_holes(right)
+    rows: list[tuple[str, ...]] = []
+    for joint, shift in zip(pair.joints, over_drill_shift(pair).tolist(), strict=True):
+        for first, second in zip(on_left[joint], on_right[joint], strict=True):
+            places = [round(hole.station, 1) for hole in (first, second)]
+            rows.append((
+                pair.beam.mark,
+                joint,
+                *(f"{round(hole.offset, 1) + 0.0:.1f}" for hole in (first, second)),
+                *(f"{place:.1f}" for place in places),
+                f"{round(places[1] - places[0], 1) + 0.0:.1f}",
+                f"{first.station - shift:.1f}",
+                f"{second.station + shift:.1f}",
+            ))  # fmt: skip
+    return rows
+
+
+def _table(header: tuple[str, ...], rows: Iterator[tuple[str, ...]]) -> str:
+    return "".join(",".join(row) + "\n" for row in (header, *rows))
+
+
+def write_prefabrication(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
+    """Write one line for every coupled beam as CSV; FileError if the file cannot be written."""
+    beams = ((shell, pair) for shell, pair, _, _ in _paired_planks(gridshell))
+    made = (prefabrication_of(shell, pair, gridshell.timber) for shell, pair in beams)
+    write_text(path, _table(PREFABRICATION_HEADER, (prefabrication_row(item) for item in made)))
+
+
+def write_drilling(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
+    """Write one line for every bolt of every beam as CSV, nominal and over-drilled; FileError as for the other table."""
+    pairs = ((pair, left, right) for _, pair, left, right in _paired_planks(gridshell))
+    write_text(path, _table(DRILLING_HEADER, (row for item in pairs for row in drilling_rows(*item))))
