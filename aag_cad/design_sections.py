@@ -233,10 +233,10 @@ class Facade(Section):
 
 
 class Ridge(Section):
-    """The steel that joins plank ends at the top: straps on the geodesics, folded blades between two shells."""
+    """The steel at the top: straps on the ends of geodesics, blades between shells at those ends or equally spaced."""
 
-    blades: Literal["geodesics", "equal"] = Field("geodesics", description="at the ends of the geodesics or equally")
-    blade_spacing: Positive = Field(600.0, description="mm along the ridge plank, for blades = 'equal'")
+    blades: Literal["geodesics", "equal"] = "geodesics"
+    blade_spacing: Positive = 600.0
     blade_width: Positive = Field(100.0, description="mm along the ridge")
     blade_thickness: Positive = 5.0
     strap_width: Positive = 50.0

@@ -25,7 +25,7 @@ from assembly.outline import Outline, shell_outline
 
 KEY_WIDTH, KEY_HEIGHT = 30.0, 21.0
 _KEY_MARGIN = 0.8
-_KEY_POINTS = 7
+_KEY_POINTS = 5
 _LAYERS = {-1: "inner", 0: "middle", 1: "outer"}
 
 

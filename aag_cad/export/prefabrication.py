@@ -148,6 +148,6 @@ def write_prefabrication(gridshell: Gridshell, path: str | os.PathLike[str]) -> 
 
 
 def write_drilling(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
-    """Write one line for every bolt of every beam as CSV, nominal and over-drilled; FileError as for the other table."""
+    """Write one line for every bolt of every beam as CSV, nominal and over-drilled; FileError if it cannot."""
     pairs = ((pair, left, right) for _, pair, left, right in _paired_planks(gridshell))
     write_text(path, _table(DRILLING_HEADER, (row for item in pairs for row in drilling_rows(*item))))

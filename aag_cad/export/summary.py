@@ -10,14 +10,13 @@ from typing import Any
 from aag_cad.audit import Finding, forming_stresses
 from aag_cad.files import write_text
 from aag_cad.network.extent import ShellExtent
+from aag_cad.parts.blades import ridge_gaps
 from aag_cad.parts.model import Gridshell, all_parts, shell_parts
 from aag_cad.parts.quantities import kind, mass, material
+from aag_cad.shop.weights import PAPER_ROOF_KG_PER_M2, PAPER_ROOF_M2, roof_weight, shell_weights
 from aag_cad.units import MM2_PER_M2, deg_per_m
 from aag_cad.web.quality import WebQuality
 from assembly.plan import Plan
-
-# Section 3.2 of the paper: per shell about 300 kg of timber and 30 kg of steel screws and plates.
-PAPER_MASS_PER_SHELL_KG = {"timber": 300.0, "steel": 30.0}
 
 
 def counts(gridshell: Gridshell) -> dict[str, int]:
@@ -52,6 +51,7 @@ def figures(gridshell: Gridshell, web: WebQuality, extent: ShellExtent) -> dict[
     timber = gridshell.timber
     return {
         "plan_area_m2": extent.plan_area * len(gridshell.shells) / MM2_PER_M2,
+        "roof_area_m2": extent.roof_area * len(gridshell.shells) / MM2_PER_M2,
         "crown_height_mm": extent.crown_height,
         "entry_height_mm": extent.entry_height,
         "smallest_bending_radius_mm": min(extent.smallest_radius.values()),
@@ -65,6 +65,25 @@ def figures(gridshell: Gridshell, web: WebQuality, extent: ShellExtent) -> dict[
         "torsion_utilisation": max(s.torsion for s in stresses) / timber.shear_strength,
         "largest_unrolled_bow_mm": max(s.bow for s in stresses),
         "largest_edgewise_stress_n_per_mm2": max(s.edgewise for s in stresses),
+        **_ridge_figures(gridshell),
+    }
+
+
+def _ridge_figures(gridshell: Gridshell) -> dict[str, float]:
+    gaps = ridge_gaps(gridshell)
+    return {} if gaps is None else {"smallest_ridge_gap_mm": gaps[0], "largest_ridge_gap_mm": gaps[1]}
+
+
+def weights_of(gridshell: Gridshell, roof_m2: float) -> dict[str, Any]:
+    """Return the weights of a shell by group and of the roof by area, beside those of the paper's vault."""
+    return {
+        "shell": [
+            {"group": w.group, "kg": round(w.kg, 1), "paper_kg": w.paper_kg, "why": w.why}
+            for w in shell_weights(gridshell)
+        ],
+        "roof_kg_per_m2": round(roof_weight(gridshell, roof_m2), 2),
+        "paper_roof_kg_per_m2": PAPER_ROOF_KG_PER_M2,
+        "why": f"the surfaces measure {roof_m2:.1f} m2 where the paper counts {PAPER_ROOF_M2:.0f} m2 of roof",
     }
 
 
@@ -85,7 +104,7 @@ def summary_of(
         "figures": figures(gridshell, web, extent),
         "web": asdict(web),
         "mass_per_shell_kg": masses_per_shell(gridshell),
-        "paper_mass_per_shell_kg": PAPER_MASS_PER_SHELL_KG,
+        "weights": weights_of(gridshell, extent.roof_area * len(gridshell.shells) / MM2_PER_M2),
         "plan_steps": len(plan.steps),
         "findings": [{**asdict(finding), "text": finding.text} for finding in findings],
         "files": dict(sizes),

@@ -16,34 +16,38 @@ _SECTORS = 40
 
 @dataclass(frozen=True)
 class ShellExtent:
-    """Plan area of one shell up to the ridge planes (mm2), heights over the ground line and curve figures (mm, rad/mm).
+    """Areas of one shell up to the ridge planes (mm2), heights over the ground line, curve figures (mm, rad/mm).
 
     Radii are those of the weak bending: geodesic curvature of A curves, normal curvature of G and E curves.
     """
 
     plan_area: float
+    roof_area: float
     crown_height: float
     entry_height: float
     smallest_radius: dict[Family, float]
     largest_twist: dict[Family, float]
 
 
-def plan_area(design: Design, chart: Chart) -> float:
-    """Return the area in plan between the ground line and the top of one shell, mm2, by Gauss-Legendre.
+def shell_areas(design: Design, chart: Chart) -> tuple[float, float]:
+    """Return the area in plan and that of the surface between ground line and top of one shell, mm2.
 
-    It is the integral of |(X_s x X_theta)_z|; where a shell leans out and in again, both parts count.
+    They are the integrals of |(X_s x X_theta)_z| and |X_s x X_theta| by Gauss-Legendre; where a shell leans out and in
+    again, both parts count in plan.
     """
     nodes, weights = np.polynomial.legendre.leggauss(_SECTORS)
     half = design.half_sector
     # The ridge bends at the crown, so each half of the sector is integrated on its own; the shell is symmetric.
     angles = half / 2.0 * (nodes + 1.0)
     bottom = bottom_coordinate(design, chart)
-    total = 0.0
+    plan = roof = 0.0
     for theta, weight in zip(angles, weights, strict=True):
         reach = (top_coordinate(design, chart, float(theta)) - bottom) / 2.0
         jet = chart.jet(bottom + reach * (nodes + 1.0), np.full_like(nodes, theta))
-        total += weight * reach * float(weights @ np.abs(np.cross(jet.du, jet.dv)[:, 2]))
-    return half * total
+        cross = np.cross(jet.du, jet.dv)
+        plan += weight * reach * float(weights @ np.abs(cross[:, 2]))
+        roof += weight * reach * float(weights @ np.linalg.norm(cross, axis=1))
+    return half * plan, half * roof
 
 
 def shell_extent(design: Design, chart: Chart, network: CurveNetwork) -> ShellExtent:
@@ -67,4 +71,4 @@ def shell_extent(design: Design, chart: Chart, network: CurveNetwork) -> ShellEx
         float(surface_points(chart, np.array([top_coordinate(design, chart, t)]), np.array([t]))[0, 2])
         for t in (0.0, design.half_sector)
     ]
-    return ShellExtent(plan_area(design, chart), heights[0], heights[1], radii, twists)
+    return ShellExtent(*shell_areas(design, chart), heights[0], heights[1], radii, twists)

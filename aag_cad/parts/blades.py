@@ -11,11 +11,13 @@ from aag_cad.geometry.framed import frames_at, nearest_station
 from aag_cad.geometry.patches import turn
 from aag_cad.geometry.surface import unit
 from aag_cad.network.model import LEFT_RIDGE, RIGHT_RIDGE, CurveNetwork, NetworkCurve
+from aag_cad.network.ridge import ridge_distance
 from aag_cad.parts.clearance import Obstacle, is_free, placed_points
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt
+from aag_cad.parts.forming import formed_points
 from aag_cad.parts.marks import Mark
 from aag_cad.parts.members import Drilling, curve_mark
-from aag_cad.parts.model import Blade, Bolt, FoldedPlate, Frame, Joint, PlateHole
+from aag_cad.parts.model import Blade, Bolt, FoldedPlate, Frame, Gridshell, Joint, PlateHole
 from aag_cad.units import Floats, vector
 
 _REACH = 30.0
@@ -224,3 +226,22 @@ def own_sides(design: Design, found: BladeJoint) -> tuple[Joint, Joint]:
         members=(curve_mark(1, RIGHT_RIDGE),),
     )
     return ours, theirs
+
+
+def ridge_gaps(gridshell: Gridshell) -> tuple[float, float] | None:
+    """Return the smallest and largest clear gap between the ridge planks of neighbouring shells, mm; None without.
+
+    It is twice the distance of the plank's nearer edge from the ridge plane, along the blades of the first ridge.
+    """
+    if not gridshell.blades:
+        return None
+    first = gridshell.joints[0].members[0]
+    plank = next(plank for plank in gridshell.shells[0].planks if plank.mark == first)
+    stations = np.array([place.station for place in plank.joints if place.joint.startswith("R")])
+    half = plank.blank.section.width / 2.0
+    edges = [
+        formed_points(plank, np.column_stack([stations, np.full_like(stations, y), np.zeros_like(stations)]))
+        for y in (-half, half)
+    ]
+    gaps = 2.0 * np.minimum(*(ridge_distance(edge, len(gridshell.shells)) for edge in edges))
+    return float(gaps.min()), float(gaps.max())

@@ -212,10 +212,14 @@ def _strip(design: Design, pair: tuple[NetworkCurve, NetworkCurve]) -> Strip:
     )
 
 
-def _with_hole(bar: _Bar, joint: str, screw: Screw, diameter: float) -> _Bar:
-    ((station, offset),) = axis_piercings(bar, np.array([screw.frame.origin]), np.array([screw.frame.z])).tolist()
-    holes = (*bar.blank.holes, Hole(station, offset, diameter, "screw", joint))
-    return replace(bar, blank=replace(bar.blank, holes=holes))
+def _drilled_bar(bar: _Bar, screws: Sequence[Screw], diameter: float) -> _Bar:
+    """Return a bar with the holes of its screws, each marked by its joint."""
+    axes = (np.array([screw.frame.origin for screw in screws]), np.array([screw.frame.z for screw in screws]))
+    holes = [
+        Hole(station, offset, diameter, "screw", screw.mark.removesuffix("-W1"))
+        for screw, (station, offset) in zip(screws, axis_piercings(bar, *axes).tolist(), strict=True)
+    ]
+    return replace(bar, blank=replace(bar.blank, holes=tuple(sorted(holes, key=lambda hole: hole.station))))
 
 
 def _stations_on(item: NetworkCurve, joints: Sequence[Joint]) -> list[float]:
@@ -317,40 +321,39 @@ def _facade_screw(design: Design, mark: Mark, point: Floats, normal: Floats) -> 
     return wood_screw(f"{mark}-W1", facade.screw_diameter, facade.screw_length, frame)
 
 
+def _fixed_at(design: Design, line: _Line, mark: Mark, station: float, at: Joint | None) -> FacadePieces:
+    """Return the joint of bars and strips on the block of another joint or, without one, on a block of its own."""
+    frames = frames_at(line.item.curve, np.array([station]))
+    screw = _facade_screw(design, mark, frames.point[0], frames.normal[0])
+    bars = (line.mullion.mark, line.clamp.mark, *line.strips)
+    blocks: tuple[CouplingBlock, ...] = ()
+    screws, drillings = [screw], []
+    if at is None:
+        blocks = (_stand_off(design, str(mark), line.item, station),)
+        more, drillings = _stand_off_screws(design, mark, blocks[0], line.plank.mark)
+        screws += more
+        members = (*bars, line.plank.mark, blocks[0].mark)
+    else:
+        members = (*bars, next(m for m in at.members if parse_mark(m).family == "K"))
+    face, normal = frames.point[0] + beam_face(design) * frames.normal[0], vector(frames.normal[0])
+    joint = Joint(str(mark), "cover", vector(face), normal, members, tuple(s.mark for s in screws))
+    return FacadePieces(screws=tuple(screws), blocks=blocks, joints=(joint,), drillings=tuple(drillings))
+
+
 def _fixed_line(
     design: Design, line: _Line, joints: Sequence[Joint], among: Sequence[Obstacle], first: int
-) -> FacadePieces:
-    """Return the bars of a geodesic, drilled, with their joints numbered upwards from ``first``."""
+) -> list[FacadePieces]:
+    """Return the joints of the bars of a geodesic, numbered upwards from ``first``, and the bars, drilled."""
     own = [joint for joint in joints if joint.kind == "AG" and line.plank.mark in joint.members and _is_outer(joint)]
     places: list[tuple[float, Joint | None]] = [*zip(_stations_on(line.item, own), own, strict=True)]
     places += [(station, None) for station in _stand_offs(design, line, joints, among)]
-    pieces = FacadePieces((line.mullion,), (), (line.clamp,))
-    bars = (line.mullion.mark, line.clamp.mark, *line.strips)
-    for number, (station, at) in enumerate(sorted(places, key=lambda place: place[0]), start=first):
-        mark = Mark(1, "V", number)
-        frames = frames_at(line.item.curve, np.array([station]))
-        point, normal = (frames.point[0], frames.normal[0]) if at is None else (np.array(at.point), np.array(at.normal))
-        screw = _facade_screw(design, mark, point, normal)
-        screws, drillings, members = [screw], [], [*bars]
-        if at is None:
-            block = _stand_off(design, str(mark), line.item, station)
-            more, drillings = _stand_off_screws(design, mark, block, line.plank.mark)
-            screws += more
-            members += [line.plank.mark, block.mark]
-            pieces = replace(pieces, blocks=(*pieces.blocks, block))
-        else:
-            members.append(next(m for m in at.members if parse_mark(m).family == "K"))
-        face = vector(point + beam_face(design) * normal)
-        joint = Joint(str(mark), "cover", face, vector(normal), tuple(members), tuple(s.mark for s in screws))
-        pieces = replace(
-            pieces,
-            mullions=(_with_hole(pieces.mullions[0], joint.mark, screw, design.facade.screw_hole),),
-            clamps=(_with_hole(pieces.clamps[0], joint.mark, screw, design.facade.screw_hole),),
-            screws=(*pieces.screws, *screws),
-            joints=(*pieces.joints, joint),
-            drillings=(*pieces.drillings, *drillings),
-        )
-    return pieces
+    places.sort(key=lambda place: place[0])
+    fixed = [_fixed_at(design, line, Mark(1, "V", n), *place) for n, place in enumerate(places, start=first)]
+    screws, hole = [pieces.screws[0] for pieces in fixed], design.facade.screw_hole
+    if not screws:
+        raise DesignError(f"facade.cover: nothing carries {line.mullion.mark}; set it to false")
+    bars = FacadePieces((_drilled_bar(line.mullion, screws, hole),), (), (_drilled_bar(line.clamp, screws, hole),))
+    return [*fixed, bars]
 
 
 def _lines(design: Design, network: CurveNetwork, shell: Shell) -> tuple[list[_Line], list[Strip]]:
@@ -389,7 +392,7 @@ def placed_facade(design: Design, network: CurveNetwork, shell: Shell) -> Facade
     done: list[FacadePieces] = []
     for line in lines:
         first = sum(len(pieces.joints) for pieces in done) + 1
-        done.append(_fixed_line(design, line, shell.joints, among, first))
+        done += _fixed_line(design, line, shell.joints, among, first)
     done.append(FacadePieces(strips=tuple(strips)))
     names = [field.name for field in fields(FacadePieces)]
     return FacadePieces(**{name: tuple(piece for pieces in done for piece in getattr(pieces, name)) for name in names})

@@ -20,7 +20,7 @@ from aag_cad.units import Floats
 
 # Limits of work and not of time: a plan must not depend on the speed of the machine.
 _BRANCHES = 300_000
-_COLUMNS_AT_A_TIME = 6
+_COLUMNS_AT_A_TIME = 3
 _PATTERNS = 20_000
 _NODES = 2_000
 _SLACK = 1e-7
@@ -204,26 +204,29 @@ def _divisible_worth(values: Floats, task: _Task, room: int) -> float:
     return worth
 
 
-def _patterns_worth(values: Floats, task: _Task, room: int, worth: float, enough: int) -> tuple[list[Pattern], bool]:
+def _patterns_worth(
+    values: Floats, task: _Task, room: int, worth: float, rising: bool = False
+) -> tuple[list[Pattern], bool]:
     """Return patterns that fit into a room and are worth more than a value, and whether these are all of them.
 
-    Depth first; a branch ends where even its rest, filled without gaps at the next best rate, is worth too little. The
-    search stops at ``enough`` patterns, or after ``_BRANCHES``.
+    If ``rising``, each is worth more than the one before it, and the last is the best of all. Depth first; a branch
+    ends where even its rest, filled without gaps at the next best rate, is worth too little.
     """
     order = _by_rate(values, task)
     found: list[Pattern] = []
     counts = [0] * len(task.sizes)
-    branches = 0
+    branches, least = 0, worth
 
     def search(depth: int, left: int, value: float) -> bool:
-        nonlocal branches
+        nonlocal branches, least
         branches += 1
         if depth == len(order):
-            if value > worth:
+            if value > least:
                 found.append(tuple(counts))
-            return len(found) < enough and branches < _BRANCHES
+                least = value + _SLACK if rising else worth
+            return len(found) < _PATTERNS and branches < _BRANCHES
         i = order[depth]
-        if value + left * values[i] / task.sizes[i] <= worth:
+        if value + left * values[i] / task.sizes[i] <= least:
             return branches < _BRANCHES
         for count in range(min(task.demand[i], left // task.sizes[i]), -1, -1):
             counts[i] = count
@@ -253,8 +256,8 @@ def _relaxation(task: _Task, columns: list[Column]) -> tuple[float, Floats]:
         fresh: list[Column] = []
         excess = 1.0
         for i, (stock, room) in enumerate(zip(task.stock, task.room, strict=True)):
-            patterns, complete = _patterns_worth(duals, task, room, stock / task.step + _SLACK, _COLUMNS_AT_A_TIME)
-            fresh += [(pattern, i) for pattern in patterns if (pattern, i) not in known]
+            patterns, complete = _patterns_worth(duals, task, room, stock / task.step + _SLACK, rising=True)
+            fresh += [(pattern, i) for pattern in patterns[-_COLUMNS_AT_A_TIME:] if (pattern, i) not in known]
             if not complete:
                 excess = max(excess, _divisible_worth(duals, task, room) * task.step / stock)
         if not fresh:
@@ -311,7 +314,7 @@ def _solved(task: _Task) -> tuple[list[Column], int, float, int]:
         complete = True
         for i, (stock, room) in enumerate(zip(task.stock, task.room, strict=True)):
             worth = stock / task.step - gap - 1e-6
-            patterns, ended = _patterns_worth(duals, task, room, worth, _PATTERNS)
+            patterns, ended = _patterns_worth(duals, task, room, worth)
             near.update((pattern, i) for pattern in patterns if any(pattern))
             complete = complete and ended
         second, solved = _least_bought(task, sorted(near), lower)

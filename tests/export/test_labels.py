@@ -71,11 +71,19 @@ def codes(page: PageObject) -> list[tuple[tuple[float, float], Modules]]:
 
 
 @pytest.fixture(scope="module")
-def all_codes(pdf: PdfReader) -> list[Modules]:
-    """All codes, row by row as the labels are read."""
+def first_codes(pdf: PdfReader) -> list[Modules]:
+    """The codes of the first six sheets and of the last, row by row as the labels are read."""
     return [
-        modules for page in pdf.pages for _, modules in sorted(codes(page), key=lambda c: (round(c[0][1]), c[0][0]))
+        modules
+        for page in (*pdf.pages[:6], pdf.pages[-1])
+        for _, modules in sorted(codes(page), key=lambda c: (round(c[0][1]), c[0][0]))
     ]
+
+
+@pytest.fixture(scope="module")
+def first_marks(labelled: list[str]) -> list[str]:
+    """The marks on the same sheets."""
+    return [*labelled[: 6 * 14], *labelled[-(len(labelled) % 14 or 14) :]]
 
 
 MASKS = (
@@ -146,15 +154,15 @@ def test_labels_lie_in_the_grid_of_the_sheet(pdf: PdfReader) -> None:
 
 
 def test_the_codes_say_the_project_and_the_mark(
-    gridshell: Gridshell, all_codes: list[Modules], labelled: list[str]
+    gridshell: Gridshell, first_codes: list[Modules], first_marks: list[str]
 ) -> None:
-    assert [decoded(modules) for modules in all_codes] == [f"{gridshell.name} {mark}" for mark in labelled]
+    assert [decoded(modules) for modules in first_codes] == [f"{gridshell.name} {mark}" for mark in first_marks]
 
 
 def test_the_codes_are_drawn_module_by_module(
-    gridshell: Gridshell, all_codes: list[Modules], labelled: list[str]
+    gridshell: Gridshell, first_codes: list[Modules], first_marks: list[str]
 ) -> None:
-    for modules, mark in zip(all_codes, labelled, strict=True):
+    for modules, mark in zip(first_codes, first_marks, strict=True):
         made = segno.make(f"{gridshell.name} {mark}", error="m", micro=False)
         assert made.error in ("M", "Q", "H")
         assert np.array_equal(modules, np.array([list(row) for row in made.matrix], dtype=bool))

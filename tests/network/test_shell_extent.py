@@ -10,7 +10,7 @@ from aag_cad.design import Design
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.geometry.profiles import CrpcProfile
 from aag_cad.geometry.revolution import AsymptoticChart
-from aag_cad.network.extent import ShellExtent, plan_area, shell_extent
+from aag_cad.network.extent import ShellExtent, shell_areas, shell_extent
 from aag_cad.network.model import CurveNetwork
 from aag_cad.units import MM2_PER_M2
 
@@ -35,7 +35,7 @@ def height_at(radius: float) -> float:
 def test_three_shells_cover_sixty_square_metres(design: Design, chart: AsymptoticChart) -> None:
     """60.27 m2, as the integral of (ridge^2 - neck^2) / 2 over the sector in closed form."""
     expected = 2.0 * quad(lambda t: (ridge_radius(t) ** 2 - 5100.0**2) / 2.0, 0.0, math.pi / 6.0)[0]
-    found = plan_area(design, chart)
+    found = shell_areas(design, chart)[0]
     assert found == pytest.approx(expected, rel=1e-9)
     assert 3.0 * found / MM2_PER_M2 == pytest.approx(60.27, abs=0.1)
 
