@@ -124,7 +124,7 @@ def build(
     only: Annotated[
         str,
         typer.Option(
-            help="comma-separated: gridshell,step,ifc,glb,tables,plan,sequence,overview; and web,curves,rhino if named"
+            help="comma-separated outputs, such as step,ifc,tables; web, curves and rhino are written only if named"
         ),
     ] = "",
     curves: Annotated[
@@ -136,7 +136,8 @@ def build(
     from aag_cad.design import load_design
 
     read = load_design(design)
-    from aag_cad.pipeline import MODEL_STAGES, chosen_outputs, curves_from
+    from aag_cad.outputs import chosen_outputs, left_out
+    from aag_cad.pipeline import MODEL_STAGES, curves_from
     from aag_cad.pipeline import build as run
 
     wanted = [name.strip() for name in only.split(",") if name.strip()]
@@ -151,6 +152,8 @@ def build(
     console.print(_key_figures(summary), highlight=False)
     console.print(_findings_table(summary["findings"]))
     console.print(_files_table(summary["files"], folder))
+    for name, remedy in left_out().items() if not wanted else ():
+        console.print(f"Left out: {name}; for it {remedy}", highlight=False)
 
 
 @app.command()

@@ -237,7 +237,7 @@ class Ridge(Section):
 
     blades: Literal["geodesics", "equal"] = "geodesics"
     blade_spacing: Positive = 600.0
-    blade_width: Positive = Field(100.0, description="mm along the ridge")
+    blade_width: Positive = 100.0
     blade_thickness: Positive = 5.0
     strap_width: Positive = 50.0
     strap_thickness: Positive = 3.0

@@ -26,38 +26,27 @@ from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.geometry.surface import Chart
 from aag_cad.network.build import shell_network
 from aag_cad.network.edges import bottom_coordinate, top_coordinate
-from aag_cad.network.extent import ShellExtent, shell_extent
+from aag_cad.network.extent import shell_extent
 from aag_cad.network.model import CurveNetwork
-from aag_cad.network.polylines import polylines_json, read_polylines
+from aag_cad.network.polylines import read_polylines
+from aag_cad.outputs import EVERY_OUTPUT, chosen_outputs
 from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.model import Gridshell
 from aag_cad.web.goals import Goals, Iteration, Optimised
-from aag_cad.web.interpolation import interpolated_surface
 from aag_cad.web.normal_equations import best_factorisation
 from aag_cad.web.npz import web_npz
 from aag_cad.web.obj import read_web_obj, web_obj
 from aag_cad.web.optimise import Method, optimise
-from aag_cad.web.quality import WebQuality, quality
+from aag_cad.web.quality import quality
 from aag_cad.web.start import StartWeb, start_web, web_chart
 from aag_cad.web.web import Web, crpc_web, sampled_web
+from aag_cad.worked import Model
 
 if TYPE_CHECKING:
     from assembly.plan import Plan
 
 Report = Callable[[str], None]
 IterationReport = Callable[[Iteration], None]
-
-
-@dataclass(frozen=True)
-class Model:
-    """A design worked out: its web with its measures, its curves with theirs, and the gridshell."""
-
-    design: Design
-    net: Web
-    web: WebQuality
-    network: CurveNetwork
-    extent: ShellExtent
-    gridshell: Gridshell
 
 
 @dataclass(frozen=True)
@@ -190,106 +179,7 @@ def gridshell_of(design: Design) -> Gridshell:
     return model_of(design).gridshell
 
 
-def _write_gridshell(model: Model, _plan: "Plan", folder: Path) -> None:
-    from aag_cad.files import write_text
-    from aag_cad.parts.store import gridshell_json
-
-    write_text(folder / "gridshell.json", gridshell_json(model.gridshell))
-
-
-def _write_step(model: Model, _plan: "Plan", folder: Path) -> None:
-    from aag_cad.export.step import write_step
-
-    write_step(model.gridshell, folder / f"{model.gridshell.name}.step")
-
-
-def _write_ifc(model: Model, plan: "Plan", folder: Path) -> None:
-    from aag_cad.export.ifc import write_ifc
-
-    write_ifc(model.gridshell, folder / f"{model.gridshell.name}.ifc", plan.steps)
-
-
-def _write_glb(model: Model, _plan: "Plan", folder: Path) -> None:
-    from aag_cad.export.gltf import write_glb
-
-    write_glb(model.gridshell, folder / f"{model.gridshell.name}.glb")
-
-
-def _write_tables(model: Model, _plan: "Plan", folder: Path) -> None:
-    from aag_cad.export.tables import write_checks_table, write_holes_table, write_parts_table
-
-    write_parts_table(model.gridshell, folder / "tables" / "parts.csv")
-    write_holes_table(model.gridshell, folder / "tables" / "holes.csv")
-    write_checks_table(model.gridshell, folder / "tables" / "checks.csv")
-
-
-def _write_plan(_model: Model, plan: "Plan", folder: Path) -> None:
-    from aag_cad.files import write_text
-    from assembly.plan import plan_json
-
-    write_text(folder / "plan.json", plan_json(plan))
-
-
-def _write_sequence(model: Model, plan: "Plan", folder: Path) -> None:
-    from assembly.printout import write_sequence
-
-    write_sequence(plan, model.gridshell, folder / "sequence.pdf")
-
-
-def _write_overview(model: Model, _plan: "Plan", folder: Path) -> None:
-    from aag_cad.export.overview import write_overview
-
-    write_overview(model.gridshell, folder / "overview.svg", folder / "overview.png")
-
-
-def _write_web(model: Model, _plan: "Plan", folder: Path) -> None:
-    from aag_cad.files import write_bytes, write_text
-
-    write_text(folder / "web.obj", web_obj(model.net))
-    write_bytes(folder / "web.npz", web_npz(model.net))
-
-
-def _write_curves(model: Model, _plan: "Plan", folder: Path) -> None:
-    from aag_cad.export.step_curves import write_step_curves
-    from aag_cad.files import write_text
-
-    surface = interpolated_surface(model.net, model.design.step)
-    write_step_curves(model.network, surface, folder / "curves.step")
-    write_text(folder / "curves.json", polylines_json(model.network))
-
-
-def _write_rhino(model: Model, _plan: "Plan", folder: Path) -> None:
-    from aag_cad.export.rhino import write_3dm
-
-    write_3dm(model.gridshell, folder / f"{model.gridshell.name}.3dm")
-
-
-OUTPUTS: dict[str, Callable[[Model, "Plan", Path], None]] = {
-    "gridshell": _write_gridshell,
-    "step": _write_step,
-    "ifc": _write_ifc,
-    "glb": _write_glb,
-    "tables": _write_tables,
-    "plan": _write_plan,
-    "sequence": _write_sequence,
-    "overview": _write_overview,
-}
-# Written only if named: for designers who go on in other programs.
-EXTRA_OUTPUTS: dict[str, Callable[[Model, "Plan", Path], None]] = {
-    "web": _write_web,
-    "curves": _write_curves,
-    "rhino": _write_rhino,
-}
 MODEL_STAGES = ("web", "curves", "parts", "audit", "assembly")
-
-
-def chosen_outputs(only: Iterable[str]) -> tuple[str, ...]:
-    """Return the outputs to write, all but the extra ones if none is named; DesignError on an unknown name."""
-    wanted, every = list(only), OUTPUTS | EXTRA_OUTPUTS
-    unknown = sorted(set(wanted) - set(every))
-    if unknown:
-        raise DesignError(f"--only: no output called {', '.join(unknown)}; there are {', '.join(every)}")
-    return tuple(name for name in every if (name in wanted if wanted else name in OUTPUTS))
 
 
 def _staging(folder: Path) -> "tempfile.TemporaryDirectory[str]":
@@ -348,7 +238,7 @@ def build(
         plan = plan_of(model.gridshell, design.crew.people, design.crew.lift_limit)
         for output in outputs:
             begin(output)
-            (OUTPUTS | EXTRA_OUTPUTS)[output](model, plan, staging)
+            EVERY_OUTPUT[output](model, plan, staging)
         ends = [start for _, start in begun[1:]] + [time.perf_counter()]
         seconds = {stage: end - start for (stage, start), end in zip(begun, ends, strict=True)}
         sizes = {path: (staging / path).stat().st_size for path in _files_below(staging)}

@@ -1,6 +1,5 @@
 """The audit: what it finds in the vault, and that every code can be made to appear."""
 
-from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -43,11 +42,8 @@ def test_the_beams_of_the_vault_say_which_bolts_sit_near_the_ridge_ends(design: 
 
 def test_the_vault_has_no_error(design: Design, gridshell: Gridshell) -> None:
     found = audit(design, gridshell)
-    others = [f for f in found if not f.code.startswith("AAG2")]
     assert "error" not in {f.severity for f in found}
-    assert Counter((f.code, f.severity) for f in others) == {("AAG503", "note"): 87}
-    unfixed = {f.mark[3] for f in found if f.code == "AAG503"}
-    assert unfixed == {"F", "R"}, "shoes and blades are not placed yet: 14 feet, 14 ridge ends and the crown per shell"
+    assert {f.code for f in found} <= {f"AAG20{i}" for i in range(1, 8)}, "only fasteners miss a clause"
 
 
 def test_a_tighter_limit_turns_every_geodesic_into_a_finding(design: Design, gridshell: Gridshell) -> None:

@@ -18,7 +18,15 @@ from typing import Any, Literal, TypeAlias
 import typst
 
 from aag_cad.errors import DesignError
-from aag_cad.export.dxf_blanks import hole_kinds, is_upper, joint_names, laying_lines, outline_corners, spread
+from aag_cad.export.dxf_blanks import (
+    CHECK_LENGTH,
+    hole_kinds,
+    is_upper,
+    joint_names,
+    laying_lines,
+    outline_corners,
+    spread,
+)
 from aag_cad.files import write_bytes
 from aag_cad.parts.model import Blank, Gridshell, Hole, Timber
 from aag_cad.resources import template
@@ -53,7 +61,6 @@ PAPERS: dict[PaperName, Paper] = {
     "roll": Paper(width=4800.0, height=0.0, margin=25.0, zone=24.0, overlap=40.0, shift=60),
     "a3": Paper(width=420.0, height=297.0, margin=25.0, zone=14.0, overlap=12.0, shift=12),
 }
-CHECK_LENGTH = 100.0
 _LEAST_WIDTH = 420.0
 _CLEAR_OF_CUT = 45.0
 _LINE = 3.6
@@ -121,7 +128,7 @@ def _strip(
         "ends": ends,
         "outline": [[x, half - y] for x, y in outline_corners(blank)],
         "holes": [
-            {"x": hole.station, "y": half - hole.offset, "diameter": hole.diameter, "slot": hole.slot, "use": hole.use}
+            {"x": hole.station, "y": half - hole.offset, "diameter": hole.diameter, "slot": hole.slot}
             for hole in blank.holes
             if low + _reach(hole) <= hole.station <= high - _reach(hole)
         ],
@@ -177,7 +184,9 @@ def _sheets(
 
 
 def templates_data(gridshell: Gridshell, paper: PaperName) -> dict[str, Any]:
-    """Return the data that the printout of all templates is made from; DesignError if a plank does not fit."""
+    """Return the data of the printout of all templates; DesignError on an unknown paper or if a plank does not fit."""
+    if paper not in PAPERS:
+        raise DesignError(f"paper: {paper!r} is not known; choose one of {', '.join(PAPERS)}")
     chosen, planks = PAPERS[paper], all_planks(gridshell)
     return {
         "title": gridshell.title,

@@ -14,7 +14,6 @@ from typing import TypeAlias
 
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, linprog, milp
-from scipy.sparse import csr_array
 
 from aag_cad.units import Floats
 
@@ -237,8 +236,8 @@ def _patterns_worth(
     return found, search(0, room, 0.0)
 
 
-def _matrix(columns: Sequence[Column]) -> csr_array:
-    return csr_array(np.array([pattern for pattern, _ in columns], dtype=np.float64).T)
+def _matrix(columns: Sequence[Column]) -> Floats:
+    return np.array([pattern for pattern, _ in columns], dtype=np.float64).T
 
 
 def _relaxation(task: _Task, columns: list[Column]) -> tuple[float, Floats]:
@@ -278,7 +277,7 @@ def _least_bought(task: _Task, columns: Sequence[Column], lower: int) -> tuple[l
         bounds=Bounds(0.0, np.inf),
         constraints=(
             LinearConstraint(_matrix(columns), np.array(task.demand), np.inf),
-            LinearConstraint(csr_array(costs), lower, np.inf),
+            LinearConstraint(costs, lower, np.inf),
         ),
         options={"mip_rel_gap": 0.0, "node_limit": _NODES},
     )

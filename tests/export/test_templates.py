@@ -253,6 +253,11 @@ def test_a_plank_too_wide_for_a_tile_is_refused_with_the_remedy(gridshell: Grids
     assert float(page.mediabox.height) * MM_PER_POINT > 260.0
 
 
+def test_an_unknown_paper_is_refused_with_those_that_there_are(gridshell: Gridshell) -> None:
+    with pytest.raises(DesignError, match="paper: 'a4' is not known; choose one of roll, a3"):
+        templates_pdf(gridshell, "a4")  # type: ignore[arg-type]
+
+
 def test_the_same_gridshell_gives_the_same_bytes(gridshell: Gridshell, plank: Plank, long_plank: Plank) -> None:
     few = alone(gridshell, plank, replace(long_plank, mark="S1-A1-02-L"))
     assert templates_pdf(few) == templates_pdf(few)

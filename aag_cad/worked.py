@@ -1,0 +1,22 @@
+"""A design worked out: what every output starts from."""
+
+from dataclasses import dataclass
+
+from aag_cad.design import Design
+from aag_cad.network.extent import ShellExtent
+from aag_cad.network.model import CurveNetwork
+from aag_cad.parts.model import Gridshell
+from aag_cad.web.quality import WebQuality
+from aag_cad.web.web import Web
+
+
+@dataclass(frozen=True)
+class Model:
+    """A design worked out: its web with its measures, its curves with theirs, and the gridshell."""
+
+    design: Design
+    net: Web
+    web: WebQuality
+    network: CurveNetwork
+    extent: ShellExtent
+    gridshell: Gridshell
