@@ -85,12 +85,6 @@ def beam_face(design: Design) -> float:
     return design.layer_offset + design.timber.width / 2.0
 
 
-def sheet_height(design: Design) -> float:
-    """Return how far the edges of the sheets, at mid-thickness, lie from the surface along its normal, mm."""
-    facade = design.facade
-    return beam_face(design) + facade.mullion[1] + facade.seal + facade.sheet_thickness / 2.0
-
-
 def strip_neighbours(design: Design, index: int) -> tuple[int, int]:
     """Return the numbers of the geodesics under the left and the right edge of a strip."""
     return index, index % design.pattern.geodesics + 1 if design.closed else index + 1
@@ -124,16 +118,12 @@ def _bar(
 ) -> tuple[FramedCurve, Blank]:
     """Return centre line and blank of a bar on a geodesic, cut square at the clearances of foot and top."""
     y, z = section.width / 2.0, section.thickness / 2.0
+    up, aside = np.array([[height - z], [height - z], [height + z], [height + z]]), np.array([[-y], [y], [y], [-y]])
 
     def least(limit: Limit) -> Callable[[float], float]:
         def inside(station: float) -> float:
             frames = frames_at(item.curve, np.array([station]))
-            corners = [
-                frames.point + (height + n * z) * frames.normal + b * y * frames.binormal
-                for n in (-1.0, 1.0)
-                for b in (-1.0, 1.0)
-            ]
-            return float(limit(np.concatenate(corners)).min())
+            return float(limit(frames.point + up * frames.normal + aside * frames.binormal).min())
 
         return inside
 
@@ -147,14 +137,12 @@ def _bar(
 
 def _bars(design: Design, items: list[NetworkCurve]) -> tuple[list[Mullion], list[ClampingBar]]:
     facade, face = design.facade, beam_face(design)
+    under, over = face + facade.mullion[1] / 2.0, face + facade.build_up - facade.clamp[1] / 2.0
     mullions, clamps = [], []
     for item in items:
-        mark = str(Mark(1, "M", item.id.number))
-        height = face + facade.mullion[1] / 2.0
-        mullions.append(Mullion(mark, *_bar(design, item, height, CrossSection(*facade.mullion), mark)))
-        mark = str(Mark(1, "D", item.id.number))
-        height = face + facade.build_up - facade.clamp[1] / 2.0
-        clamps.append(ClampingBar(mark, *_bar(design, item, height, CrossSection(*facade.clamp), mark)))
+        mark, upper = str(Mark(1, "M", item.id.number)), str(Mark(1, "D", item.id.number))
+        mullions.append(Mullion(mark, *_bar(design, item, under, CrossSection(*facade.mullion), mark)))
+        clamps.append(ClampingBar(upper, *_bar(design, item, over, CrossSection(*facade.clamp), upper)))
     return mullions, clamps
 
 
@@ -190,7 +178,9 @@ def _upper_cut(design: Design, sheet: Sheet, pair: tuple[NetworkCurve, NetworkCu
 def _strip(design: Design, pair: tuple[NetworkCurve, NetworkCurve]) -> Strip:
     """Return the strip between two geodesics, its edges no longer than its corners need."""
     mark = str(Mark(1, "P", pair[0].id.number))
-    height, gap, thickness = sheet_height(design), design.facade.edge_gap, design.facade.sheet_thickness
+    facade = design.facade
+    gap, thickness = facade.edge_gap, facade.sheet_thickness
+    height = beam_face(design) + facade.mullion[1] + facade.seal + thickness / 2.0
     left, right = (
         offset_curve(item.curve, height, sign * gap, -_REACH, item.curve.length + _REACH)
         for item, sign in zip(pair, (1.0, -1.0), strict=True)
@@ -222,18 +212,21 @@ def _drilled_bar(bar: _Bar, screws: Sequence[Screw], diameter: float) -> _Bar:
     return replace(bar, blank=replace(bar.blank, holes=tuple(sorted(holes, key=lambda hole: hole.station))))
 
 
-def _stations_on(item: NetworkCurve, joints: Sequence[Joint]) -> list[float]:
-    if not joints:
-        return []
-    points = np.array([joint.point for joint in joints])
+def _stations_on(item: NetworkCurve, points: Floats) -> list[float]:
+    """Return the stations on a geodesic that are nearest to points (n, 3)."""
     nearest = np.argmin(np.linalg.norm(points[:, None] - item.curve.points[None], axis=2), axis=1)
     return [float(s) for s in nearest_station(item.curve, points, item.curve.stations[nearest])]
 
 
-def _bar_ends(line: _Line) -> list[float]:
-    """Return the stations of the geodesic under both ends of its mullion."""
-    points = line.mullion.curve.points[[0, -1]]
-    return [float(s) for s in nearest_station(line.item.curve, points, np.array([line.item.start, line.item.end]))]
+def _crossings(line: _Line, joints: Sequence[Joint]) -> list[tuple[float, Joint]]:
+    """Return the joints of a geodesic with beams, each with its station."""
+    own = [joint for joint in joints if joint.kind == "AG" and line.plank.mark in joint.members]
+    points = np.array([joint.point for joint in own]).reshape(-1, 3)
+    return list(zip(_stations_on(line.item, points), own, strict=True))
+
+
+def _is_outer(joint: Joint) -> bool:
+    return any(parse_mark(member).family == "A2" for member in joint.members)
 
 
 def _wanted_stations(design: Design, line: _Line, beams: list[float]) -> list[float]:
@@ -241,7 +234,7 @@ def _wanted_stations(design: Design, line: _Line, beams: list[float]) -> list[fl
 
     ``beams`` are the stations of those that are there.
     """
-    spacing, (first, last) = design.facade.support_spacing, _bar_ends(line)
+    spacing, (first, last) = design.facade.support_spacing, _stations_on(line.item, line.mullion.curve.points[[0, -1]])
     supports, wanted = sorted(beams), []
     if not supports or supports[0] - first > FREE_END * spacing:
         wanted.append(line.item.start + _STAND_OFF_END)
@@ -280,22 +273,17 @@ def _free_station(
     return None
 
 
-def _stand_offs(design: Design, line: _Line, joints: Sequence[Joint], among: Sequence[Obstacle]) -> list[float]:
+def _stand_offs(
+    design: Design, line: _Line, crossings: list[tuple[float, Joint]], among: Sequence[Obstacle]
+) -> list[float]:
     """Return the stations of the blocks on a geodesic that its mullion needs besides the outer beams."""
-    crossings = [joint for joint in joints if joint.kind == "AG" and line.plank.mark in joint.members]
-    own = [joint for joint in crossings if _is_outer(joint)]
-    beams = _stations_on(line.item, crossings)
     near = [o for o in among if o.part.mark != line.plank.mark]
-    found: list[float] = []
-    for wanted in _wanted_stations(design, line, _stations_on(line.item, own)):
-        station = _free_station(design, line.item, wanted, [*beams, *found], near)
+    taken = [station for station, _ in crossings]
+    for wanted in _wanted_stations(design, line, [station for station, joint in crossings if _is_outer(joint)]):
+        station = _free_station(design, line.item, wanted, taken, near)
         if station is not None:
-            found.append(station)
-    return found
-
-
-def _is_outer(joint: Joint) -> bool:
-    return any(parse_mark(member).family == "A2" for member in joint.members)
+            taken.append(station)
+    return taken[len(crossings) :]
 
 
 def _stand_off_screws(
@@ -314,20 +302,15 @@ def _stand_off_screws(
     return screws, drillings
 
 
-def _facade_screw(design: Design, mark: Mark, point: Floats, normal: Floats) -> Screw:
-    facade = design.facade
-    head = point + (beam_face(design) + facade.build_up) * normal
-    frame = axis_frame(head, -normal, np.cross(normal, np.array([0.0, 0.0, 1.0])))
-    return wood_screw(f"{mark}-W1", facade.screw_diameter, facade.screw_length, frame)
-
-
 def _fixed_at(design: Design, line: _Line, mark: Mark, station: float, at: Joint | None) -> FacadePieces:
     """Return the joint of bars and strips on the block of another joint or, without one, on a block of its own."""
-    frames = frames_at(line.item.curve, np.array([station]))
-    screw = _facade_screw(design, mark, frames.point[0], frames.normal[0])
+    frames, facade = frames_at(line.item.curve, np.array([station])), design.facade
+    up, face = frames.normal[0], frames.point[0] + beam_face(design) * frames.normal[0]
+    axis = axis_frame(face + facade.build_up * up, -up, frames.tangent[0])
+    screw = wood_screw(f"{mark}-W1", facade.screw_diameter, facade.screw_length, axis)
     bars = (line.mullion.mark, line.clamp.mark, *line.strips)
     blocks: tuple[CouplingBlock, ...] = ()
-    screws, drillings = [screw], []
+    screws, drillings = [screw], list[Drilling]()
     if at is None:
         blocks = (_stand_off(design, str(mark), line.item, station),)
         more, drillings = _stand_off_screws(design, mark, blocks[0], line.plank.mark)
@@ -335,8 +318,7 @@ def _fixed_at(design: Design, line: _Line, mark: Mark, station: float, at: Joint
         members = (*bars, line.plank.mark, blocks[0].mark)
     else:
         members = (*bars, next(m for m in at.members if parse_mark(m).family == "K"))
-    face, normal = frames.point[0] + beam_face(design) * frames.normal[0], vector(frames.normal[0])
-    joint = Joint(str(mark), "cover", vector(face), normal, members, tuple(s.mark for s in screws))
+    joint = Joint(str(mark), "cover", vector(face), vector(up), members, tuple(s.mark for s in screws))
     return FacadePieces(screws=tuple(screws), blocks=blocks, joints=(joint,), drillings=tuple(drillings))
 
 
@@ -344,9 +326,9 @@ def _fixed_line(
     design: Design, line: _Line, joints: Sequence[Joint], among: Sequence[Obstacle], first: int
 ) -> list[FacadePieces]:
     """Return the joints of the bars of a geodesic, numbered upwards from ``first``, and the bars, drilled."""
-    own = [joint for joint in joints if joint.kind == "AG" and line.plank.mark in joint.members and _is_outer(joint)]
-    places: list[tuple[float, Joint | None]] = [*zip(_stations_on(line.item, own), own, strict=True)]
-    places += [(station, None) for station in _stand_offs(design, line, joints, among)]
+    crossings = _crossings(line, joints)
+    places: list[tuple[float, Joint | None]] = [place for place in crossings if _is_outer(place[1])]
+    places += [(station, None) for station in _stand_offs(design, line, crossings, among)]
     places.sort(key=lambda place: place[0])
     fixed = [_fixed_at(design, line, Mark(1, "V", n), *place) for n, place in enumerate(places, start=first)]
     screws, hole = [pieces.screws[0] for pieces in fixed], design.facade.screw_hole
@@ -357,20 +339,19 @@ def _fixed_line(
 
 
 def _lines(design: Design, network: CurveNetwork, shell: Shell) -> tuple[list[_Line], list[Strip]]:
-    items = [item for item in network.curves if item.id.family == "G"]
+    items = {item.id.number: item for item in network.curves if item.id.family == "G"}
     planks = {plank.mark: plank for plank in shell.planks}
-    mullions, clamps = _bars(design, items)
-    by_number = {item.id.number: item for item in items}
-    beside: dict[int, list[str]] = {number: [] for number in by_number}
+    mullions, clamps = _bars(design, list(items.values()))
+    beside: dict[int, list[str]] = {number: [] for number in items}
     strips = []
-    for number in by_number if design.closed else list(by_number)[:-1]:
+    for number in items if design.closed else list(items)[:-1]:
         left, right = strip_neighbours(design, number)
-        strips.append(_strip(design, (by_number[left], by_number[right])))
-        for neighbour in (left, right):
-            beside[neighbour].append(strips[-1].mark)
+        strips.append(_strip(design, (items[left], items[right])))
+        beside[left].append(strips[-1].mark)
+        beside[right].append(strips[-1].mark)
     lines = [
         _Line(item, planks[curve_mark(1, item.id)], mullion, clamp, tuple(sorted(beside[item.id.number])))
-        for item, mullion, clamp in zip(items, mullions, clamps, strict=True)
+        for item, mullion, clamp in zip(items.values(), mullions, clamps, strict=True)
     ]
     return lines, strips
 
@@ -408,10 +389,10 @@ def covered(shell: Shell, pieces: FacadePieces) -> Shell:
         if not wanted:
             return plank
         new = drilled(replace(plank, blank=replace(plank.blank, holes=())), wanted).blank.holes
-        holes = sorted([*plank.blank.holes, *new], key=lambda hole: (hole.station, hole.offset))
-        places = with_joints(plank, [(mark, joints[mark]) for mark in sorted({drilling.joint for drilling in wanted})])
-        stations = sorted([*plank.joints, *places], key=lambda joint: (joint.station, joint.joint))
-        return replace(plank, blank=replace(plank.blank, holes=tuple(holes)), joints=tuple(stations))
+        holes = tuple(sorted([*plank.blank.holes, *new], key=lambda hole: (hole.station, hole.offset)))
+        places = with_joints(plank, ((mark, joints[mark]) for mark in sorted({d.joint for d in wanted})))
+        stations = tuple(sorted([*plank.joints, *places], key=lambda joint: (joint.station, joint.joint)))
+        return replace(plank, blank=replace(plank.blank, holes=holes), joints=stations)
 
     return replace(
         shell,

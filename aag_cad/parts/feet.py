@@ -164,7 +164,7 @@ def _bolt_places(design: Design, site: _Site) -> list[tuple[float, float, CurveI
     frames = frames_at(site.geodesic.curve, np.array([foot]))
     lean = float((site.beam @ frames.tangent[0]) * (site.beam @ frames.binormal[0]))
     turn = -1.0 if lean > 0.0 else 1.0
-    inner = min(y, up)
+    inner = design.joints.bolt_offset
     return [(own, inner, geodesic), (own, -inner, geodesic), (foot + up, turn * y, edge), (foot - up, -turn * y, edge)]
 
 

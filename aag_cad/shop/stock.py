@@ -21,7 +21,7 @@ from aag_cad.units import Floats
 _BRANCHES = 300_000
 _COLUMNS_AT_A_TIME = 3
 _PATTERNS = 20_000
-_NODES = 2_000
+_NODES = 300
 _SLACK = 1e-7
 
 Pattern: TypeAlias = tuple[int, ...]
@@ -260,7 +260,7 @@ def _relaxation(task: _Task, columns: list[Column]) -> tuple[float, Floats]:
             if not complete:
                 excess = max(excess, _divisible_worth(duals, task, room) * task.step / stock)
         if not fresh:
-            return float(answer.fun) / excess, duals / excess
+            return float(duals @ np.array(task.demand)) / excess, duals / excess
         known.update(fresh)
         columns += fresh
 
@@ -306,7 +306,9 @@ def _solved(task: _Task) -> tuple[list[Column], int, float, int]:
     columns = sorted({*usual, *((single, _shortest_stock(task, single)) for single in singles)})
     relaxed, duals = _relaxation(task, columns)
     lower = math.ceil(relaxed - 1e-6)
-    best = _better(task, usual, _least_bought(task, columns, lower)[0])
+    best = usual
+    if _bought(task, best) > lower:
+        best = _better(task, best, _least_bought(task, columns, lower)[0])
     if _bought(task, best) > lower:
         gap = _bought(task, best) - 1.0 - relaxed
         near: set[Column] = set(best)

@@ -121,7 +121,7 @@ def fastener_axes(gridshell: Gridshell, shell: Shell, plank: Plank) -> tuple[Flo
 def test_the_drawn_holes_meet_the_axes_of_bolts_and_screws_on_the_formed_planks(
     gridshell: Gridshell, documents: dict[str, Drawing], groups: tuple[DrillGroup, ...]
 ) -> None:
-    """Every hole of every plank of the vault, turned back from its template and formed, to 0.1 mm (measured: 1e-9)."""
+    """Every hole of every plank of the vault, turned back from its template and formed, to 0.1 mm."""
     laid: dict[str, tuple[str, Laid]] = {m.mark: (group.mark, m.laid) for group in groups for m in group.members}
     for shell in gridshell.shells:
         for plank in shell.planks:
