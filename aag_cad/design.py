@@ -20,6 +20,7 @@ from aag_cad.design_sections import (
     Ridge,
     Section,
     ShellsSection,
+    Site,
     SplineSurface,
     Stock,
     Supports,
@@ -56,6 +57,7 @@ class Design(Section):
     crew: Crew
     stock: Stock = Stock()
     optimise: Optimise | None = None
+    site: Site | None = None
 
     @model_validator(mode="after")
     def _fits_together(self) -> "Design":
@@ -195,12 +197,11 @@ class Design(Section):
         facade = self.facade
         if not facade.cover:
             return ()
-        bar, free = facade.build_up, self.timber.width / 2 - self.joints.bolt_offset - self.joints.bolt_hole / 2
         return (
             (
-                bar < facade.screw_length < bar + free,
-                f"facade.screw_length: {facade.screw_length:g} mm does not end between the face of the coupling block "
-                f"and the bolt across it; allowed {bar:g} to {bar + free:g}, or facade.cover = false",
+                facade.build_up < facade.screw_length,
+                f"facade.screw_length: {facade.screw_length:g} mm does not reach the coupling block under mullion, "
+                f"tapes, sheet and clamp; more than {facade.build_up:g}",
             ),
             *(
                 (

@@ -10,6 +10,7 @@ from pydantic import (
     Field,
     StringConstraints,
     Tag,
+    model_validator,
 )
 
 from aag_cad.resources import template
@@ -210,7 +211,8 @@ class Facade(Section):
     sheet_thickness: Positive
     sheet_width: Positive = Field(description="of the stock sheets, across the ribs")
     sheet_lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
-        (3000.0, 4000.0, 5000.0, 6000.0, 7000.0), description="of the stock sheets, along the ribs"
+        (3000.0, 3500.0, 4000.0, 4500.0, 5000.0, 5500.0, 6000.0, 7000.0),
+        description="of the stock sheets, along the ribs",
     )
     sheet_mass: Positive = Field(1.7, description="kg/m2")
     edge_gap: Positive = Field(5.0, description="from the geodesic to the edge of a sheet: the screws pass there")
@@ -289,14 +291,18 @@ class Stock(Section):
     kerf: NotNegative = Field(4.0, description="mm, of the cross-cut saw")
     split_kerf: NotNegative = Field(1.0, description="mm, of the saw that splits boards into planks")
     trim: NotNegative = Field(10.0, description="mm, cut off at each end of a board or bar")
-    finger_joint: bool = Field(False, description="whether planks longer than every board are finger-jointed")
+    finger_joint: Annotated[bool, Field(strict=True)] = Field(
+        False, description="whether planks longer than every board are finger-jointed"
+    )
     finger_length: NotNegative = Field(15.0, description="mm, that the fingers of both pieces share")
     finger_clearance: NotNegative = Field(60.0, description="mm, from the fingers to the rim of the nearest hole")
     finger_spacing: Positive = Field(600.0, description="mm, from a finger joint to the next, a sibling's or an end")
     offcuts: Annotated[str, StringConstraints(min_length=1)] | None = Field(
         None, description="CSV file of old planks, used before boards; a relative path starts in the working folder"
     )
-    accept_old_holes: bool = Field(False, description="whether an old hole may lie in a plank cut from an old one")
+    accept_old_holes: Annotated[bool, Field(strict=True)] = Field(
+        False, description="whether an old hole may lie in a plank cut from an old one"
+    )
     old_hole_clearance: NotNegative = Field(24.0, description="mm, from the rim of an old hole to that of a new one")
     old_hole_tolerance: NotNegative = Field(0.3, description="mm, within which an old hole is used again as a new one")
     bar_lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
@@ -305,10 +311,46 @@ class Stock(Section):
     metal_lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
         (6000.0,), description="mm, of aluminium and steel bars"
     )
-    sheet_lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
-        (3000.0, 4000.0, 5000.0, 6000.0, 7000.0), description="mm, of facade sheets, along their ribs"
-    )
     sheet_gap: NotNegative = Field(5.0, description="mm, between two strips cut from one sheet")
+
+
+class Site(Section):
+    """Where the gridshell stands: names, and how vault coordinates lie in a projected coordinate system.
+
+    The origin of the vault (its centre on the ground line) has the eastings, northings and height given, in metres.
+    """
+
+    name: Text = "Site"
+    building: Text | None = Field(None, description="name of the building; without it, project.title")
+    address: tuple[Text, ...] = Field((), description="lines of the postal address, the street first, the town last")
+    epsg: Annotated[Count, Field(ge=1024, le=998999)] | None = Field(
+        None, description="number of the projected coordinate system in the EPSG register, e.g. 25832"
+    )
+    crs_name: Text | None = Field(None, description="its name, e.g. ETRS89 / UTM zone 32N")
+    vertical_datum: Text | None = Field(None, description="of the height, e.g. DHHN2016")
+    eastings: Number | None = Field(None, description="m, of the vault's origin")
+    northings: Number | None = Field(None, description="m, of the vault's origin")
+    height: Number = Field(0.0, description="m over the vertical datum, of the vault's origin")
+    rotation_deg: Annotated[Number, Field(ge=-360, le=360)] = Field(
+        0.0, description="from grid east to the vault's x axis, counter-clockwise seen from above"
+    )
+    true_north_deg: Annotated[Number, Field(ge=-360, le=360)] | None = Field(
+        None, description="from the vault's y axis to true north, counter-clockwise; without it, grid north is taken"
+    )
+    latitude_deg: Annotated[Number, Field(ge=-90, le=90)] | None = None
+    longitude_deg: Annotated[Number, Field(ge=-180, le=180)] | None = None
+
+    @model_validator(mode="after")
+    def _goes_together(self) -> "Site":
+        together: tuple[tuple[str, ...], ...] = (
+            ("epsg", "eastings", "northings"),
+            ("latitude_deg", "longitude_deg"),
+        )
+        for keys in together:
+            missing = [key for key in keys if getattr(self, key) is None]
+            if missing and len(missing) < len(keys):
+                raise ValueError(f"{', '.join(missing)}: missing; {', '.join(keys)} are given together or not at all")
+        return self
 
 
 class Optimise(Section):

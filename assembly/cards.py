@@ -7,8 +7,24 @@ from typing import Any
 
 import numpy as np
 
+from aag_cad.parts.marks import shell_of
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Gridshell, Part, Plank, Screw, Shell, all_parts, shell_parts
+from aag_cad.parts.model import (
+    Bolt,
+    ClampingBar,
+    Gridshell,
+    JointKind,
+    Mullion,
+    Part,
+    Plank,
+    Rod,
+    Screw,
+    Shell,
+    Strap,
+    Strip,
+    all_parts,
+    shell_parts,
+)
 from aag_cad.parts.products import product_name
 from aag_cad.parts.quantities import kind
 from assembly.control import control_figures
@@ -21,6 +37,12 @@ from assembly.steps import PHASES, Plan, Step
 Weights = Mapping[str, tuple[float, float]]
 
 _WORTH_SAYING = 1.0
+_TIGHTENED: dict[JointKind, str] = {
+    "AA": "stud bolts (N)",
+    "AG": "block bolts (K)",
+    "boundary": "block bolts (K)",
+    "ridge": "strap bolts (R)",
+}
 
 PHASE_NAMES = {
     "prefabricate": "Make beams",
@@ -47,6 +69,18 @@ def _mass(kg: float) -> str:
     return f"{kg:.1f} kg" if kg < 100.0 else f"{kg:.0f} kg"
 
 
+def group_name(part: Part) -> str:
+    """Return what pieces of one make have in common, whatever their lengths: e.g. ``Plank 100 x 12``, ``Strip 10``."""
+    match part:
+        case Plank() | Strap() | Mullion() | ClampingBar():
+            section = part.blank.section
+            return f"{kind(part).capitalize()} {section.width:g} x {section.thickness:g}"
+        case Strip():
+            return f"{kind(part).capitalize()} {part.thickness:g} thick"
+        case _:
+            return product_name(part)
+
+
 def part_rows(parts: Mapping[str, Part], marks: tuple[str, ...], outer: Set[str] = frozenset()) -> list[list[str]]:
     """Return one line for each product among the marks: count, what it is, and which marks or at which joints.
 
@@ -55,23 +89,18 @@ def part_rows(parts: Mapping[str, Part], marks: tuple[str, ...], outer: Set[str]
     groups: dict[str, list[str]] = defaultdict(list)
     for mark in marks:
         part = parts[mark]
-        name = f"Plank {_section(part)}" if isinstance(part, Plank) else product_name(part)
+        name = group_name(part)
         side = f", from {'outside' if mark in outer else 'inside'}" if isinstance(part, Screw) else ""
         groups[name + side].append(mark)
     rows = []
     for name, listed in groups.items():
-        fasteners = kind(parts[listed[0]]) in ("bolt", "screw")
+        fasteners = isinstance(parts[listed[0]], Bolt | Screw | Rod)
         joints = tuple(dict.fromkeys(joint_of(mark) for mark in listed))
         where = f"at {joined_ranges(joints)}" if fasteners else joined_ranges(listed)
         if fasteners and len(listed) != len(joints) and len(listed) % len(joints) == 0:
             where += f", {len(listed) // len(joints)} each"
         rows.append([str(len(listed)), name, where])
     return rows
-
-
-def _section(plank: Plank) -> str:
-    section = plank.blank.section
-    return f"{section.width:g} x {section.thickness:g}"
 
 
 def _beam_table(shell: Shell, step: Step, weights: Weights) -> dict[str, Any]:
@@ -113,17 +142,19 @@ def _feet_table(gridshell: Gridshell) -> dict[str, Any]:
     rows = []
     for shell in gridshell.shells:
         matrix = frame_matrix(shell.placement)
-        for joint in (joint for joint in shell.joints if joint.kind == "foot"):
-            x, y, _z = (matrix[:3, :3] @ np.array(joint.point) + matrix[:3, 3]).tolist()
-            rows.append([joint.mark, f"{x:.0f}", f"{y:.0f}"])
-    return {"head": ["foot", "x mm", "y mm"], "rows": rows}
+        for footing in shell.footings:
+            x, y, _z = (matrix[:3, :3] @ np.array(footing.frame.origin) + matrix[:3, 3]).tolist()
+            rows.append([footing.mark, f"{x:.0f}", f"{y:.0f}"])
+    return {"head": ["block", "x mm", "y mm"], "rows": rows}
 
 
 def _bolt_table(shell: Shell) -> dict[str, Any]:
-    studs = {stud.mark for stud in shell.studs}
+    kinds = {joint.mark: joint.kind for joint in shell.joints}
     groups: dict[tuple[str, str], int] = defaultdict(int)
     for bolt in shell.bolts:
-        groups[product_name(bolt), "stud bolts (N)" if joint_of(bolt.mark) in studs else "block bolts (K)"] += 1
+        where = _TIGHTENED.get(kinds[joint_of(bolt.mark)])
+        if where is not None:
+            groups[product_name(bolt), where] += 1
     return {"head": ["bolts", "size", "count"], "rows": [[where, name, str(n)] for (name, where), n in groups.items()]}
 
 
@@ -153,7 +184,8 @@ def step_card(
     chapter = [s for s in plan.steps if s.shell == step.shell]
     pieces = lifted(step.phase, step.marks, step.assemblies)
     heaviest = max(pieces, key=lambda mark: (weights[mark][0], mark), default="")
-    outer = {mark for shell in gridshell.shells if shell.mark == step.shell for mark in driven_from_outside(shell)}
+    worked_on = {step.shell, *(shell_of(mark) for mark in step.marks)}
+    outer = {mark for shell in gridshell.shells if shell.mark in worked_on for mark in driven_from_outside(shell)}
     added = sum(weights[mark][0] for mark in step.marks)
     return {
         "number": step.number,
@@ -183,7 +215,7 @@ def totals(gridshell: Gridshell, weights: Weights) -> dict[str, Any]:
     def counted(parts: tuple[Part, ...]) -> dict[str, tuple[int, float]]:
         groups: dict[str, tuple[int, float]] = {}
         for part in parts:
-            name = f"planks {part.family}" if isinstance(part, Plank) else product_name(part)
+            name = f"planks {part.family}" if isinstance(part, Plank) else group_name(part)
             count, mass = groups.get(name, (0, 0.0))
             groups[name] = count + 1, mass + weights[part.mark][0]
         return groups

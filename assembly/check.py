@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Plank, Screw, Shell, Strap, Stud, all_parts, shell_parts
+from aag_cad.parts.model import Footing, Gridshell, Part, Rod, Shell, Shoe, all_parts, ridge_parts, shell_parts
 from assembly.steps import Plan, Step
 
 
@@ -74,6 +74,16 @@ def _layering(shell: Shell, places: dict[str, tuple[Step, int]]) -> Iterator[tup
                     yield lower.mark, upper.mark, joint.mark
 
 
+def _covering(shell: Shell) -> set[str]:
+    """Return the marks of what covers a shell: bars, strips, blocks on geodesics, and the screws of all these."""
+    joints = [joint for joint in shell.joints if joint.kind == "cover"]
+    blocks = {block.mark for block in shell.blocks}
+    held = {mark for joint in joints for mark in joint.fasteners}
+    held |= {joint.mark for joint in joints if joint.mark in blocks}
+    pieces: tuple[Part, ...] = (*shell.mullions, *shell.strips, *shell.clamps)
+    return held | {part.mark for part in pieces}
+
+
 def _orders(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]]) -> Iterator[tuple[str, Step, Step]]:
     """Yield (reason, earlier step, later step) for all that must follow something else in a shell."""
     at = {mark: step for mark, (step, _) in places.items()}
@@ -101,10 +111,16 @@ def _orders(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]]) -> It
             if mark in studs and mark in at:
                 yield f"{mark} is a stud", at[mark], hoist
                 yield from ((f"{mark} holds {plank}", at[plank], at[mark]) for plank in joint.members if plank in at)
-    later = {mark for joint in shell.joints if joint.kind in ("foot", "footing", "cover") for mark in joint.fasteners}
+    feet = {mark for joint in shell.joints if joint.kind == "foot" for mark in joint.fasteners}
+    covering = _covering(shell)
     for part in shell_parts(shell):
-        stays = isinstance(part, Plank | Stud | CouplingBlock | Bolt | Screw | Strap) and part.mark not in later
-        if part.mark in at and stays:
+        if part.mark not in at or part.mark in covering:
+            continue
+        if part.mark in feet:
+            yield f"{part.mark} bolts a shoe to the shell", stand, at[part.mark]
+        elif isinstance(part, Footing | Rod | Shoe):
+            yield f"{part.mark} carries the shell", at[part.mark], stand
+        else:
             yield f"{part.mark} is part of the stiff shell", at[part.mark], stand
 
 
@@ -125,23 +141,40 @@ def _shell_problems(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]
             yield f"{reason}, but nothing forces step {first.id} before step {second.id}"
 
 
-def _blades(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
+def _ridges(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
     forced, at = _ancestors(plan), {mark: step for step in plan.steps for mark in step.marks}
     stands = {mark: step.id for step in plan.steps if step.phase == "stand" for mark in step.assemblies}
-    for blade in gridshell.blades:
-        for shell in (f"S{digit}" for digit in parse_mark(blade.mark).family[1:]):
-            if blade.mark in at and stands.get(shell) not in forced[at[blade.mark].id]:
-                yield f"{blade.mark}: nothing forces the standing of {shell} before step {at[blade.mark].id}"
+    for part in (part for part in ridge_parts(gridshell) if part.mark in at):
+        for shell in (f"S{digit}" for digit in parse_mark(part.mark).family[1:]):
+            if stands.get(shell) not in forced[at[part.mark].id]:
+                yield f"{part.mark}: nothing forces the standing of {shell} before step {at[part.mark].id}"
+    for joint in gridshell.joints:
+        for member, fastener in ((m, f) for f in joint.fasteners for m in joint.members if m in at and f in at):
+            first, second = at[member].id, at[fastener].id
+            if first != second and first not in forced[second]:
+                yield f"{fastener} joins {member}, but nothing forces step {first} before step {second}"
+
+
+def _cover(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
+    """Yield what is covered before all shells stand and all ridges are joined."""
+    forced, at = _ancestors(plan), {mark: step for step in plan.steps for mark in step.marks}
+    before = [step.id for step in plan.steps if step.phase in ("stand", "ridges")]
+    for shell in gridshell.shells:
+        for mark in sorted(_covering(shell) & set(at)):
+            missed = [first for first in before if first not in forced[at[mark].id]]
+            if missed:
+                yield f"{mark} covers {shell.mark}, but nothing forces step {missed[0]} before step {at[mark].id}"
 
 
 def check_plan(plan: Plan, gridshell: Gridshell) -> list[str]:
     """Return what is wrong with a plan for a gridshell, one line each; an empty list if nothing is.
 
     Every part in exactly one step, every beam laid once, numbers and predecessors in order, and everything that must
-    come first (what lies below, what a fastener joins, the shaping before the screws) forced by predecessors.
+    come first (what lies below, what a fastener joins, the shaping before the screws, the feet before the shell, the
+    shells before their ridges, all of them before the cover) forced by predecessors.
     """
     places = _places(plan, gridshell)
     problems = [*_numbering(plan), *_once(plan, gridshell)]
     for shell in gridshell.shells:
         problems += list(_shell_problems(plan, shell, places))
-    return problems + list(_blades(plan, gridshell))
+    return [*problems, *_ridges(plan, gridshell), *_cover(plan, gridshell)]

@@ -47,10 +47,12 @@ def outer_end(stud: Stud) -> Floats:
 def control_figures(shell: Shell) -> Control:
     """Return control studs at the corners and the crown of a shell with their heights and distances.
 
-    Heights are those of the studs' outer ends over the lowest joint at the foot (z of the shell's coordinates).
+    Heights are those of the studs' outer ends over the lowest foot joint, where geodesic and bottom plank meet (z of
+    the shell's coordinates); over the lowest joint of all where no geodesic has a foot.
     """
     studs, flat = _seen(shell)
-    foot = min(joint.point[2] for joint in shell.joints)
+    heights = [joint.point[2] for joint in shell.joints if joint.kind == "foot"]
+    foot = min(heights or [joint.point[2] for joint in shell.joints])
     chosen: dict[str, Stud] = {}
     for name, corner in _CORNERS.items():
         left = [i for i, stud in enumerate(studs) if stud not in chosen.values()]

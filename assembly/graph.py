@@ -7,18 +7,20 @@ from typing import TypedDict
 import networkx as nx
 import numpy as np
 
-from aag_cad.geometry.framed import FramedCurve
 from aag_cad.parts.assemblies import beam_of_parts
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import (
+    ClampingBar,
     Frame,
     Gridshell,
     Joint,
     Mullion,
     Part,
     Plank,
+    Strap,
     Strip,
+    all_joints,
     all_parts,
     shell_parts,
 )
@@ -43,37 +45,37 @@ class PartNode(TypedDict):
     position: Vector
 
 
-def _curve(part: Part) -> FramedCurve | None:
-    match part:
-        case Plank() | Mullion():
-            return part.curve
-        case Strip():
-            return part.left
-        case _:
-            return None
-
-
 def part_point(part: Part) -> Floats:
-    """Return a point (3,) in the middle of a part, in the coordinates that the part is given in."""
-    curve, frame = _curve(part), part_frame(part)
-    if curve is not None:
-        return np.asarray(curve.point_spline(curve.length / 2.0), dtype=np.float64)
-    assert frame is not None
-    return np.array(frame.origin)
+    """Return a point (3,) in the middle of a part, in the coordinates that the part is given in.
+
+    Of a bar and a plank it lies on the centre line, of a strip midway between its edges; else it is the frame's origin.
+    """
+    match part:
+        case Plank() | Mullion() | ClampingBar() | Strap():
+            return np.asarray(part.curve.point_spline(part.curve.length / 2.0), dtype=np.float64)
+        case Strip():
+            ends = [edge.point_spline(edge.length / 2.0) for edge in (part.left, part.right)]
+            return np.asarray(np.mean(ends, axis=0), dtype=np.float64)
+        case _:
+            frame = part_frame(part)
+            assert frame is not None
+            return np.array(frame.origin)
 
 
 def joint_of(mark: str) -> str:
-    """Return the mark of the joint that a bolt or screw belongs to."""
+    """Return the mark of the joint that a bolt, screw or threaded rod belongs to."""
     return mark.rpartition("-")[0]
 
 
 def joint_edges(joint: Joint) -> Iterator[tuple[str, str]]:
     """Yield the pairs of parts that a joint ties together.
 
-    A stud or block is the hub that the planks and fasteners are tied to; without one, all members are tied pairwise
-    and the fasteners to the first of them.
+    A stud, coupling block, strap, shoe, concrete block or blade is the hub that the others are tied to: the member that
+    bears the joint's mark, or else its coupling block. Without one, all members are tied pairwise and the fasteners to
+    the first of them.
     """
     hubs = [mark for mark in joint.members if mark == joint.mark]
+    hubs = hubs or [mark for mark in joint.members if parse_mark(mark).family == "K"]
     if not hubs:
         yield from combinations(joint.members, 2)
         hubs = list(joint.members[:1])
@@ -119,7 +121,7 @@ def assembly_graph(gridshell: Gridshell) -> "nx.MultiGraph[str]":
                 position=_placed_point(part, placements.get(part.mark)),
             ),
         )
-    for joint in (*(joint for shell in gridshell.shells for joint in shell.joints), *gridshell.joints):
+    for joint in all_joints(gridshell):
         for a, b in joint_edges(joint):
             graph.add_edge(a, b, key=joint.mark, kind=joint.kind)
     return graph

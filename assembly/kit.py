@@ -24,8 +24,8 @@ class Kit:
 
     ``beams``: planks, blocks and block bolts by beam. ``studs``: bolts by stud. ``edges``: screws, straps and the bolts
     of straps by edge plank. ``outside`` and ``inside``: screws by geodesic, by the side that they are driven from.
-    ``feet``: footings, threaded rods and shoes. ``standing``: bolts of the shoes. ``cover``: mullions, strips, clamping
-    bars and their screws.
+    ``feet``: footings, threaded rods and shoes. ``standing``: bolts of the shoes. ``cover``: blocks on geodesics,
+    mullions, strips, clamping bars and the screws of all these.
     """
 
     beams: dict[str, tuple[str, ...]]
@@ -104,6 +104,7 @@ def shell_kit(shell: Shell) -> Kit:
     def group(name: Group, marks: Iterable[str]) -> dict[str, tuple[str, ...]]:
         return {mark: tuple(homes.get((name, mark), ())) for mark in marks}
 
+    covering = {mark for joint in shell.joints if joint.kind == "cover" for mark in joint.members}
     blocks: dict[str, list[str]] = defaultdict(list)
     for block in shell.blocks:
         blocks[block_beam.get(block.mark, "")].append(block.mark)
@@ -121,6 +122,7 @@ def shell_kit(shell: Shell) -> Kit:
         feet=(*_marks(shell.footings), *homes.get(("feet", ""), ()), *_marks(shell.shoes)),
         standing=tuple(homes.get(("standing", ""), ())),
         cover=(
+            *(mark for mark in blocks[""] if mark in covering),
             *_marks(shell.mullions),
             *_marks(shell.strips),
             *_marks(shell.clamps),

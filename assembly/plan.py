@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any, get_type_hints
 
-from aag_cad.parts.model import Gridshell, Shell, all_parts
+from aag_cad.parts.model import Gridshell, JointKind, all_parts
 from aag_cad.parts.quantities import mass, sizes
 from assembly.crew import Crew, hands_for
 from assembly.errors import PlanError
@@ -13,7 +13,7 @@ from assembly.kit import shell_kit
 from assembly.process import Work, shell_works
 from assembly.site import site_works
 from assembly.steps import PHASES, Phase, Plan, Step
-from assembly.wording import wording
+from assembly.wording import Fastener, fasteners_by_kind, wording
 
 __all__ = ["Plan", "Step", "plan_json", "plan_of", "read_plan"]
 
@@ -49,11 +49,16 @@ def lifted(phase: Phase, marks: tuple[str, ...], assemblies: tuple[str, ...]) ->
 
 
 def _step(
-    work: Work, number: int, last: bool, shells: Sequence[Shell], crew: Crew, weights: Mapping[str, tuple[float, float]]
+    work: Work,
+    number: int,
+    last: bool,
+    shell: str,
+    fasteners: Mapping[JointKind, Sequence[Fastener]],
+    crew: Crew,
+    weights: Mapping[str, tuple[float, float]],
 ) -> Step:
     """Return the step of a piece of work: with its words, and with the hands for its heaviest and longest piece."""
-    own = [shell for shell in shells if work.id.startswith(f"{shell.mark}.")]
-    words = wording(work.phase, own or shells, work.below)
+    words = wording(work.phase, fasteners, work.below)
     pieces = [weights[mark] for mark in lifted(work.phase, work.marks, work.assemblies)]
     hands = hands_for(crew, max((m for m, _ in pieces), default=0.0), max((n for _, n in pieces), default=0.0))
     return Step(
@@ -61,7 +66,7 @@ def _step(
         id=work.id,
         phase=work.phase,
         title=work.title,
-        shell=own[0].mark if own else "",
+        shell=shell,
         marks=work.marks,
         assemblies=work.assemblies,
         tools=(*words.tools, "lifting gear") if hands.gear and work.least_crew <= crew.people else words.tools,
@@ -83,12 +88,13 @@ def plan_of(gridshell: Gridshell, people: int, lift_limit: float) -> Plan:
             "mend crew.people and crew.lift_limit"
         )
     crew, weights = Crew(people, lift_limit), piece_weights(gridshell)
-    chapters = (*(shell_works(shell) for shell in gridshell.shells), site_works(gridshell))
+    chapters = [(shell.mark, (shell,), shell_works(shell)) for shell in gridshell.shells]
     steps: list[Step] = []
-    for works in chapters:
+    for name, shells, works in [*chapters, ("", gridshell.shells, site_works(gridshell))]:
+        fasteners = fasteners_by_kind(gridshell, shells)
         for i, work in enumerate(works):
             last = work.phase in _EACH_HELD or all(later.phase != work.phase for later in works[i + 1 :])
-            steps.append(_step(work, len(steps) + 1, last, gridshell.shells, crew, weights))
+            steps.append(_step(work, len(steps) + 1, last, name, fasteners, crew, weights))
     return Plan(gridshell.name, tuple(steps))
 
 

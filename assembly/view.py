@@ -10,6 +10,7 @@ from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
 
 _UPRIGHT = 1e-3
+_NOT_TIMBER = ("footing", "cover")
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,8 +25,9 @@ class View:
 
 
 def shell_view(shell: Shell) -> View:
-    """Return the view against the mean outward normal of a shell's joints, with the foot at the bottom."""
-    towards = unit(np.mean([joint.normal for joint in shell.joints], axis=0))
+    """Return the view against the mean outward normal of a shell's timber joints, with the foot at the bottom."""
+    timber = [joint.normal for joint in shell.joints if joint.kind not in _NOT_TIMBER]
+    towards = unit(np.mean(timber, axis=0))
     vertical = np.array([0.0, 0.0, 1.0])
     up = vertical - (vertical @ towards) * towards
     if float(np.linalg.norm(up)) < _UPRIGHT:

@@ -1,4 +1,4 @@
-"""The frame of an IFC4 Reference View file: header, units, contexts, spatial tree and GUIDs."""
+"""The frame of an IFC file: header, units, contexts, owner, placements and GUIDs."""
 
 import uuid
 from collections.abc import Iterable
@@ -9,6 +9,7 @@ import ifcopenshell
 import ifcopenshell.guid
 
 from aag_cad import __version__
+from aag_cad.export.ifc_schemas import IfcOptions, IfcSchema, known, view_definition
 from aag_cad.parts.model import Frame, Gridshell
 from aag_cad.units import Vector
 
@@ -16,20 +17,33 @@ Entity: TypeAlias = ifcopenshell.entity_instance
 
 # A file must not change when nothing but the day has changed.
 TIMESTAMP = "2000-01-01T00:00:00"
+_TIMESTAMP_SECONDS = 946_684_800
 _NAMESPACE = uuid.uuid5(uuid.NAMESPACE_DNS, "aag-toolkit")
 _ORIGIN = (0.0, 0.0, 0.0)
+_TOOLKIT = "AAG toolkit"
 
 
 @dataclass(frozen=True, eq=False)
 class IfcModel:
-    """An open file with what every entity needs: the project's id, the contexts, the shared identity placement."""
+    """An open file with what every entity needs: the project's id, the contexts, the shared identity placement.
+
+    ``owner`` is the owner history that IFC2X3 demands of every rooted entity; None in later schemas.
+    """
 
     file: ifcopenshell.file
+    options: IfcOptions
     project_id: uuid.UUID
+    owner: Entity | None
     project: Entity
+    context: Entity
     body: Entity
     axis: Entity
     identity: Entity
+
+    @property
+    def schema(self) -> IfcSchema:
+        """The schema that the file follows."""
+        return self.options.schema
 
 
 def project_id(name: str) -> uuid.UUID:
@@ -42,16 +56,38 @@ def guid(project: uuid.UUID, *names: str) -> str:
     return str(ifcopenshell.guid.compress(uuid.uuid5(project, "/".join(names)).hex))
 
 
-def _fill_header(file: ifcopenshell.file, gridshell: Gridshell) -> None:
-    file.header.file_description.description = ("ViewDefinition [ReferenceView_V1.2]",)
+def rooted(model: IfcModel, entity: str, names: tuple[str, ...], *values: object, **attributes: object) -> Entity:
+    """Write a rooted entity whose GUID derives from ``names``; values and attributes follow its owner history.
+
+    Attributes that the schema does not have are left out.
+    """
+    return model.file.create_entity(
+        entity, guid(model.project_id, *names), model.owner, *values, **known(model.schema, entity, **attributes)
+    )
+
+
+def _fill_header(file: ifcopenshell.file, gridshell: Gridshell, options: IfcOptions) -> None:
+    file.header.file_description.description = (view_definition(options),)
     name = file.header.file_name
     name.name = f"{gridshell.name}.ifc"
     name.time_stamp = TIMESTAMP
-    name.author = ("AAG toolkit",)
-    name.organization = ("AAG toolkit",)
+    name.author = (options.author or _TOOLKIT,)
+    name.organization = (options.organisation or _TOOLKIT,)
     name.preprocessor_version = f"IfcOpenShell {ifcopenshell.version}"
-    name.originating_system = f"AAG toolkit - aag-toolkit - {__version__}"
+    name.originating_system = f"{_TOOLKIT} - aag-toolkit - {__version__}"
     name.authorization = "none"
+
+
+def _owner(file: ifcopenshell.file, options: IfcOptions) -> Entity | None:
+    if options.schema != "IFC2X3":
+        return None
+    organisation = file.create_entity("IfcOrganization", Name=options.organisation or _TOOLKIT)
+    person = file.create_entity("IfcPerson", FamilyName=options.author or _TOOLKIT)
+    user = file.create_entity("IfcPersonAndOrganization", person, organisation)
+    application = file.create_entity("IfcApplication", organisation, __version__, _TOOLKIT, "aag-toolkit")
+    return file.create_entity(
+        "IfcOwnerHistory", user, application, ChangeAction="ADDED", CreationDate=_TIMESTAMP_SECONDS
+    )
 
 
 def _units(file: ifcopenshell.file) -> Entity:
@@ -77,11 +113,11 @@ def _units(file: ifcopenshell.file) -> Entity:
     )
 
 
-def start_file(gridshell: Gridshell) -> IfcModel:
+def start_file(gridshell: Gridshell, options: IfcOptions) -> IfcModel:
     """Return a new file with header, project, units and contexts."""
-    file = ifcopenshell.file(schema="IFC4")
-    _fill_header(file, gridshell)
-    ident = project_id(gridshell.name)
+    file = ifcopenshell.file(schema=options.schema)
+    _fill_header(file, gridshell, options)
+    owner, ident = _owner(file, options), project_id(gridshell.name)
     identity = file.create_entity("IfcAxis2Placement3D", file.create_entity("IfcCartesianPoint", _ORIGIN))
     context = file.create_entity("IfcGeometricRepresentationContext", None, "Model", 3, 1e-3, identity)
     body, axis = (
@@ -92,10 +128,10 @@ def start_file(gridshell: Gridshell) -> IfcModel:
         for name, view in (("Body", "MODEL_VIEW"), ("Axis", "GRAPH_VIEW"))
     )  # fmt: skip
     project = file.create_entity(
-        "IfcProject", guid(ident, "project"), None, gridshell.name, LongName=gridshell.title,
+        "IfcProject", guid(ident, "project"), owner, gridshell.name, LongName=gridshell.title,
         RepresentationContexts=[context], UnitsInContext=_units(file),
     )  # fmt: skip
-    return IfcModel(file, ident, project, body, axis, identity)
+    return IfcModel(file, options, ident, owner, project, context, body, axis, identity)
 
 
 def _rounded(values: Vector, digits: int) -> Vector:
@@ -122,27 +158,10 @@ def local_placement(model: IfcModel, parent: Entity | None, frame: Frame | None 
 def aggregate(model: IfcModel, name: str, whole: Entity, parts: Iterable[Entity]) -> None:
     """Write that a whole consists of its parts, if it has any."""
     if related := list(parts):
-        model.file.create_entity(
-            "IfcRelAggregates", guid(model.project_id, "aggregates", name), None, None, None, whole, related
-        )
+        rooted(model, "IfcRelAggregates", ("aggregates", name), None, None, whole, related)
 
 
-def spatial_tree(model: IfcModel, gridshell: Gridshell) -> Entity:
-    """Write site, building and storey, and return the storey; its origin is that of the vault."""
-    site_at = local_placement(model, None)
-    site = model.file.create_entity(
-        "IfcSite", guid(model.project_id, "site"), None, "Site", ObjectPlacement=site_at, CompositionType="ELEMENT"
-    )
-    building_at = local_placement(model, site_at)
-    building = model.file.create_entity(
-        "IfcBuilding", guid(model.project_id, "building"), None, gridshell.title,
-        ObjectPlacement=building_at, CompositionType="ELEMENT", ElevationOfTerrain=gridshell.ground,
-    )  # fmt: skip
-    storey = model.file.create_entity(
-        "IfcBuildingStorey", guid(model.project_id, "storey"), None, "Ground floor",
-        ObjectPlacement=local_placement(model, building_at), CompositionType="ELEMENT", Elevation=0.0,
-    )  # fmt: skip
-    aggregate(model, "project", model.project, [site])
-    aggregate(model, "site", site, [building])
-    aggregate(model, "building", building, [storey])
-    return storey
+def declare(model: IfcModel, name: str, definitions: list[Entity]) -> None:
+    """Declare definitions in the project, if there are any and the schema knows declarations."""
+    if definitions and model.schema != "IFC2X3":
+        rooted(model, "IfcRelDeclares", ("declares", name), None, None, model.project, definitions)

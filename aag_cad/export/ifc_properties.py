@@ -1,46 +1,53 @@
-"""Property sets and quantities in IFC: what the parts weigh, how they are drilled and how far they are bent."""
+"""The set ``AAG_Fabrication``: what the workshop needs to make and find each part."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TypeAlias
 
-from aag_cad.export.ifc_base import Entity, IfcModel, guid
+from aag_cad.export.ifc_base import Entity, IfcModel
+from aag_cad.export.ifc_sets import Property, write_property_set
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import CouplingBlock, Hole, Part, Plank, Stud, Timber
-from aag_cad.parts.products import product_name
-from aag_cad.parts.quantities import (
-    density,
-    gross_volume,
-    hole_count,
-    largest_twist,
-    mass,
-    section_area,
-    sizes,
-    smallest_radius,
-    volume,
+from aag_cad.parts.model import (
+    Blade,
+    Bolt,
+    ClampingBar,
+    CouplingBlock,
+    FlatBar,
+    Hole,
+    Mullion,
+    Part,
+    Plank,
+    Rod,
+    Screw,
+    Shoe,
+    Strap,
+    Stud,
+    Timber,
 )
-from aag_cad.units import MM2_PER_M2, MM3_PER_M3, deg_per_m
+from aag_cad.parts.products import product_name
+from aag_cad.parts.quantities import hole_count, kind, largest_twist, mass, sizes, smallest_radius
+from aag_cad.units import deg_per_m
 
 FABRICATION = "AAG_Fabrication"
-MEMBER_COMMON = "Pset_MemberCommon"
-MEMBER_QUANTITIES = "Qto_MemberBaseQuantities"
-
-Value: TypeAlias = str | int | float | bool
-Property: TypeAlias = tuple[str, str, Value]
+# Bought by the box: they share one set for each product, which therefore holds no mark.
+FASTENERS = Bolt | Screw | Rod
 
 
 def hole_text(number: int, hole: Hole) -> str:
     """Return a hole as it stands in the hole table: number, station, offset, diameter, use and joint."""
+    slot = f" slot {hole.slot:g}" if hole.slot else ""
     return (
         f"{number}: x {hole.station:.1f}, y {round(hole.offset, 1) + 0.0:+.1f}, "
-        f"d {hole.diameter:g} {hole.use} {hole.joint}"
+        f"d {hole.diameter:g}{slot} {hole.use} {hole.joint}"
     )
 
 
 def hole_table(part: Part) -> str:
-    """Return the holes of a part as one text, in mm, separated by semicolons; empty if it has none."""
+    """Return the holes of a part as one text, in mm, separated by semicolons; empty if it has none.
+
+    x and y of a hole are those of the blank, the block or the unfolded plate; z is along a stud from its centre.
+    """
     match part:
-        case Plank():
+        case Plank() | Mullion() | ClampingBar() | Strap():
             texts = [hole_text(number, hole) for number, hole in enumerate(part.blank.holes, start=1)]
         case CouplingBlock():
             texts = [hole_text(number, hole) for number, hole in enumerate(part.holes, start=1)]
@@ -49,130 +56,76 @@ def hole_table(part: Part) -> str:
                 f"{number}: z {hole.height:+.1f}, at {math.degrees(hole.angle):.1f} deg, d {hole.diameter:g}"
                 for number, hole in enumerate(part.holes, start=1)
             ]
+        case Shoe() | Blade():
+            texts = [
+                f"{number}: x {hole.station:.1f}, y {round(hole.offset, 1) + 0.0:+.1f}, d {hole.diameter:g}"
+                for number, hole in enumerate(part.plate.holes, start=1)
+            ]
         case _:
             texts = []
     return "; ".join(texts)
 
 
-def fabrication(part: Part) -> list[Property]:
-    """Return the properties of ``AAG_Fabrication``: what the workshop needs to make and find one piece."""
+def make(part: Part, timber: Timber) -> list[Property]:
+    """Return what all parts of one product share: kind, product, sizes (mm), holes and mass (kg)."""
+    length, width, thickness = (round(size, 3) for size in sizes(part))
+    blank = "Blank" if isinstance(part, FlatBar) else ""
+    return [
+        ("Kind", "IfcLabel", kind(part)),
+        ("Product", "IfcLabel", product_name(part)),
+        (f"{blank}Length", "IfcPositiveLengthMeasure", length),
+        (f"{blank}Width", "IfcPositiveLengthMeasure", width),
+        (f"{blank}Thickness", "IfcPositiveLengthMeasure", thickness),
+        ("HoleCount", "IfcInteger", hole_count(part)),
+        ("NetWeight", "IfcMassMeasure", round(mass(part, timber), 6)),
+    ]
+
+
+def strain(plank: Plank) -> list[Property]:
+    """Return layer, largest twist (degrees per metre) and, unless it is straight, smallest radius (mm) of a plank."""
+    rows: list[Property] = [
+        ("Layer", "IfcInteger", plank.layer),
+        ("LargestTwistDegPerM", "IfcReal", round(deg_per_m(largest_twist(plank)), 6)),
+    ]
+    if math.isfinite(radius := smallest_radius(plank)):
+        rows.append(("SmallestRadius", "IfcPositiveLengthMeasure", round(radius, 3)))
+    return rows
+
+
+def fabrication(part: Part, timber: Timber, drilling_group: str = "") -> list[Property]:
+    """Return the properties of ``AAG_Fabrication`` of one piece; planks name the template that they are drilled by."""
     mark = parse_mark(part.mark)
     rows: list[Property] = [
         ("Mark", "IfcIdentifier", part.mark),
         ("Family", "IfcLabel", mark.family),
         ("Index", "IfcInteger", mark.index),
-        ("HoleCount", "IfcInteger", hole_count(part)),
+        *make(part, timber),
     ]
     if holes := hole_table(part):
         rows.append(("Holes", "IfcText", holes))
-    if not isinstance(part, Plank):
-        return rows
-    rows += [
-        ("Layer", "IfcInteger", part.layer),
-        ("BlankLength", "IfcPositiveLengthMeasure", round(part.blank.length, 3)),
-        ("BlankWidth", "IfcPositiveLengthMeasure", part.blank.section.width),
-        ("BlankThickness", "IfcPositiveLengthMeasure", part.blank.section.thickness),
-        ("LargestTwistDegPerM", "IfcReal", round(deg_per_m(largest_twist(part)), 3)),
-    ]
-    if math.isfinite(radius := smallest_radius(part)):
-        rows.append(("SmallestRadius", "IfcPositiveLengthMeasure", round(radius, 1)))
+    if isinstance(part, Plank):
+        rows += strain(part)
+    if drilling_group:
+        rows.append(("DrillingGroup", "IfcIdentifier", drilling_group))
     return rows
 
 
-def member_common(part: Part) -> list[Property]:
-    """Return the properties of ``Pset_MemberCommon`` that the model knows."""
-    return [
-        ("Reference", "IfcIdentifier", product_name(part)),
-        ("IsExternal", "IfcBoolean", True),
-        ("LoadBearing", "IfcBoolean", True),
-    ]
-
-
-def member_quantities(part: Part, timber: Timber) -> list[tuple[str, str, float]]:
-    """Return the quantities of a timber part: mm, m2, m3 and kg; net is less the holes."""
-    gross = gross_volume(part) / MM3_PER_M3
-    return [
-        ("Length", "IfcQuantityLength", round(sizes(part)[0], 3)),
-        ("CrossSectionArea", "IfcQuantityArea", round(section_area(part) / MM2_PER_M2, 9)),
-        ("GrossVolume", "IfcQuantityVolume", round(gross, 9)),
-        ("NetVolume", "IfcQuantityVolume", round(volume(part) / MM3_PER_M3, 9)),
-        ("GrossWeight", "IfcQuantityWeight", round(gross * density(part, timber), 6)),
-        ("NetWeight", "IfcQuantityWeight", round(mass(part, timber), 6)),
-    ]
-
-
-def _values(model: IfcModel, rows: Iterable[Property]) -> list[Entity]:
-    return [
-        model.file.create_entity("IfcPropertySingleValue", name, None, model.file.create_entity(measure, value))
-        for name, measure, value in rows
-    ]
-
-
-def _define(model: IfcModel, name: str, owner: str, definition: Entity, related: Sequence[Entity]) -> None:
-    model.file.create_entity(
-        "IfcRelDefinesByProperties",
-        guid(model.project_id, "defined", name, owner),
-        None,
-        None,
-        None,
-        related,
-        definition,
-    )
-
-
-def write_property_set(
-    model: IfcModel, name: str, owner: str, rows: Iterable[Property], related: Sequence[Entity]
+def write_fabrication(
+    model: IfcModel,
+    products: Iterable[tuple[str, Sequence[Part]]],
+    occurrences: Mapping[str, Entity],
+    timber: Timber,
+    groups: Mapping[str, str],
 ) -> None:
-    """Write a property set and give it to entities; ``owner`` (a mark or a product's key) makes its GUID."""
-    ident = guid(model.project_id, "set", name, owner)
-    definition = model.file.create_entity("IfcPropertySet", ident, None, name, None, _values(model, rows))
-    _define(model, name, owner, definition, related)
+    """Write the fabrication set of every part; ``products`` gives the parts of each product's key.
 
-
-def write_quantities(
-    model: IfcModel, name: str, owner: str, rows: Iterable[tuple[str, str, float]], related: Sequence[Entity]
-) -> None:
-    """Write a quantity set and give it to entities; ``owner`` (a mark or a product's key) makes its GUID."""
-    quantities = [model.file.create_entity(entity, title, None, None, value) for title, entity, value in rows]
-    ident = guid(model.project_id, "set", name, owner)
-    definition = model.file.create_entity("IfcElementQuantity", ident, None, name, None, None, quantities)
-    _define(model, name, owner, definition, related)
-
-
-def write_product_sets(
-    model: IfcModel, key: str, parts: Sequence[Part], occurrences: Mapping[str, Entity], timber: Timber
-) -> None:
-    """Write what the parts of one product share: the member sets of timber, the mass of a fastener."""
-    first, related = parts[0], [occurrences[part.mark] for part in parts]
-    if isinstance(first, Plank | Stud | CouplingBlock):
-        write_property_set(model, MEMBER_COMMON, key, member_common(first), related)
-        write_quantities(model, MEMBER_QUANTITIES, key, member_quantities(first, timber), related)
-    else:
-        rows: list[Property] = [
-            ("Product", "IfcLabel", product_name(first)),
-            ("NetWeight", "IfcMassMeasure", round(mass(first, timber), 6)),
-        ]
-        write_property_set(model, FABRICATION, key, rows, related)
-
-
-def write_piece_sets(model: IfcModel, parts: Iterable[Part], occurrences: Mapping[str, Entity]) -> None:
-    """Write the fabrication set of every piece of timber."""
-    for part in parts:
-        if isinstance(part, Plank | Stud | CouplingBlock):
-            write_property_set(model, FABRICATION, part.mark, fabrication(part), [occurrences[part.mark]])
-
-
-def material_properties(model: IfcModel, material: Entity, density: float, timber: Timber | None = None) -> None:
-    """Write the density (kg/m3), and for timber species, strength class and moduli, of a material."""
-    sets: dict[str, list[Property]] = {"Pset_MaterialCommon": [("MassDensity", "IfcMassDensityMeasure", density)]}
-    if timber is not None:
-        sets["Pset_MaterialWood"] = [
-            ("Species", "IfcLabel", timber.species),
-            ("StrengthGrade", "IfcLabel", timber.strength_class),
-        ]
-        sets["Pset_MaterialMechanical"] = [
-            ("YoungModulus", "IfcModulusOfElasticityMeasure", timber.modulus),
-            ("ShearModulus", "IfcModulusOfElasticityMeasure", timber.shear_modulus),
-        ]
-    for name, rows in sets.items():
-        model.file.create_entity("IfcMaterialProperties", name, None, _values(model, rows), material)
+    ``groups`` holds the drilling group of each plank by mark.
+    """
+    for key, parts in products:
+        if isinstance(parts[0], FASTENERS):
+            related = [occurrences[part.mark] for part in parts]
+            write_property_set(model, FABRICATION, key, make(parts[0], timber), related)
+            continue
+        for part in parts:
+            rows = fabrication(part, timber, groups.get(part.mark, ""))
+            write_property_set(model, FABRICATION, part.mark, rows, [occurrences[part.mark]])

@@ -44,6 +44,8 @@ _SAFE = 1e-3
 _PASSES = 20
 # How far a bar may reach past its last support, as a share of the spacing.
 FREE_END = 0.75
+# The bars are a little longer than the geodesic under them.
+_EARLY = 0.95
 # A block on the geodesic: length along it, its screws from the middle, and from the plank's end to its middle (12 d).
 _STAND_OFF_LENGTH = 90.0
 _STAND_OFF_SCREWS = 12.0
@@ -236,9 +238,9 @@ def _wanted_stations(design: Design, line: _Line, beams: list[float]) -> list[fl
     """
     spacing, (first, last) = design.facade.support_spacing, _stations_on(line.item, line.mullion.curve.points[[0, -1]])
     supports, wanted = sorted(beams), []
-    if not supports or supports[0] - first > FREE_END * spacing:
+    if not supports or supports[0] - first > _EARLY * FREE_END * spacing:
         wanted.append(line.item.start + _STAND_OFF_END)
-    if not supports or last - supports[-1] > FREE_END * spacing:
+    if not supports or last - supports[-1] > _EARLY * FREE_END * spacing:
         wanted.append(line.item.end - _STAND_OFF_END)
     for a, b in pairwise(sorted([*supports, *wanted])):
         count = math.ceil((b - a) / spacing)

@@ -12,7 +12,7 @@ from aag_cad.errors import DesignError
 from aag_cad.network.model import CurveNetwork
 from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.mesh import plank_mesh, shell_mesh
-from aag_cad.parts.model import Gridshell, Plank, Shell, shell_parts
+from aag_cad.parts.model import Footing, Gridshell, Plank, Rod, Shell, all_joints, shell_parts
 from aag_cad.pipeline import gridshell_of
 from aag_cad.units import Floats
 
@@ -43,8 +43,10 @@ def test_every_beam_has_two_planks_of_its_own(shell: Shell) -> None:
 
 
 def test_the_joints_of_a_shell(shell: Shell, network: CurveNetwork) -> None:
-    """Each crossing of the network becomes one joint of its kind."""
-    assert Counter(joint.kind for joint in shell.joints) == Counter(c.kind for c in network.crossings)
+    """Each crossing of the network becomes one joint of its kind, each foot one more between shoe and block."""
+    crossings = Counter(c.kind for c in network.crossings)
+    structural = Counter(joint.kind for joint in shell.joints if joint.kind != "cover")
+    assert structural == crossings + Counter(footing=crossings["foot"])
     assert len({joint.mark for joint in shell.joints}) == len(shell.joints)
 
 
@@ -77,9 +79,10 @@ def test_no_part_comes_nearer_to_the_ridge_plane_than_the_gap(design: Design, sh
         assert ridge_distance(shell_mesh(part).vertices).min() > design.boundary.ridge_gap - 0.05, part.mark
 
 
-def test_no_part_stands_below_the_ground(gridshell: Gridshell) -> None:
+def test_nothing_but_concrete_blocks_and_their_rods_reaches_below_the_ground(gridshell: Gridshell) -> None:
     for part in shell_parts(gridshell.shells[0]):
-        assert shell_mesh(part).vertices[:, 2].min() > gridshell.ground, part.mark
+        low = shell_mesh(part).vertices[:, 2].min()
+        assert (low < gridshell.ground - 1.0) == isinstance(part, Footing | Rod), part.mark
 
 
 def test_the_highest_timber_is_about_as_high_as_the_crown_of_the_surface(shell: Shell) -> None:
@@ -95,11 +98,12 @@ def test_both_planks_of_a_beam_carry_all_its_joints(shell: Shell) -> None:
         assert joints[beam.planks[0]] == joints[beam.planks[1]] == marks
 
 
-def test_every_joint_of_a_plank_names_the_plank_and_the_other_way_round(shell: Shell) -> None:
-    named = {(mark, joint.mark) for joint in shell.joints for mark in joint.members}
-    on_planks = {(plank.mark, place.joint) for plank in shell.planks for place in plank.joints}
-    planks = {plank.mark for plank in shell.planks}
-    assert {pair for pair in named if pair[0] in planks} == on_planks
+def test_every_joint_of_a_plank_names_the_plank_and_the_other_way_round(gridshell: Gridshell) -> None:
+    """Ridge planks carry the joints of their blades too, which lie between two shells."""
+    planks = [plank for shell in gridshell.shells for plank in shell.planks]
+    marks = {plank.mark for plank in planks}
+    named = {(mark, joint.mark) for joint in all_joints(gridshell) for mark in joint.members if mark in marks}
+    assert {(plank.mark, place.joint) for plank in planks for place in plank.joints} == named
 
 
 def test_the_timber_is_that_of_the_design_with_the_values_of_its_class(design: Design, gridshell: Gridshell) -> None:
@@ -133,6 +137,17 @@ def test_a_gap_wider_than_any_bolt_is_long_is_refused_by_its_key(design: Design,
 
 
 def test_ground_follows_the_foot_height(design: Design, network: CurveNetwork, gridshell: Gridshell) -> None:
+    """Shoes grow, rods and blocks go down by 70 mm; all else stays where it is."""
     supports = design.supports.model_copy(update={"foot_height": 220.0})
     raised = gridshell_from(design.model_copy(update={"supports": supports}), network)
-    assert raised == replace(gridshell, ground=-220.0)
+    assert raised.ground == gridshell.ground - 70.0 == -220.0
+    for old, new in zip(gridshell.shells, raised.shells, strict=True):
+        for a, b in zip((*old.rods, *old.footings), (*new.rods, *new.footings), strict=True):
+            assert a.frame.origin[2] - b.frame.origin[2] == pytest.approx(70.0, abs=1e-9)
+    assert [_without_feet(shell) for shell in raised.shells] == [_without_feet(shell) for shell in gridshell.shells]
+    assert (raised.blades, raised.bolts, raised.joints) == (gridshell.blades, gridshell.bolts, gridshell.joints)
+
+
+def _without_feet(shell: Shell) -> Shell:
+    above = tuple(joint for joint in shell.joints if joint.kind != "footing")
+    return replace(shell, shoes=(), rods=(), footings=(), joints=above)

@@ -6,19 +6,22 @@ from hypothesis import strategies as st
 
 from aag_cad.errors import MarkError
 from aag_cad.parts.marks import Mark, parse_mark, shell_of
-from aag_cad.parts.model import Gridshell, all_parts
+from aag_cad.parts.model import Gridshell, all_parts, ridge_parts, shell_parts
+from aag_cad.parts.quantities import kind
 
-FAMILIES = ("A1", "A2", "G", "E", "F", "R", "C", "P", "M", "N", "K")
+FAMILIES = ("A1", "A2", "G", "E", "F", "R", "C", "P", "M", "D", "N", "K", "V")
 SHELLS = st.integers(1, 99)
 INDICES = st.integers(1, 99_999)
-FASTENERS = st.builds("{}{}".format, st.sampled_from("BW"), st.integers(1, 99))
+FASTENERS = st.builds("{}{}".format, st.sampled_from("BWT"), st.integers(1, 99))
+PAIRS = st.permutations("123456789").map(lambda pair: f"R{pair[0]}{pair[1]}")
+BLADE_BOLTS = st.one_of(st.just(""), st.integers(1, 99).map("B{}".format))
 
 MARKS = st.one_of(
     st.builds(Mark, SHELLS),
     st.builds(Mark, SHELLS, st.sampled_from(FAMILIES), INDICES),
     st.builds(Mark, SHELLS, st.sampled_from(("A1", "A2")), INDICES, st.sampled_from("LR")),
-    st.builds(Mark, SHELLS, st.sampled_from("NKFR"), INDICES, FASTENERS),
-    st.builds(Mark, st.just(0), st.permutations("123456789").map(lambda pair: f"R{pair[0]}{pair[1]}"), INDICES),
+    st.builds(Mark, SHELLS, st.sampled_from("NKFRCV"), INDICES, FASTENERS),
+    st.builds(Mark, st.just(0), PAIRS, INDICES, BLADE_BOLTS),
 )
 
 
@@ -36,6 +39,11 @@ MARKS = st.one_of(
         ("S12-G-101", Mark(12, "G", 101)),
         ("S1-N-1234", Mark(1, "N", 1234)),
         ("R12-03", Mark(0, "R12", 3)),
+        ("R12-03-B1", Mark(0, "R12", 3, "B1")),
+        ("S1-F-05-B4", Mark(1, "F", 5, "B4")),
+        ("S1-C-05-T1", Mark(1, "C", 5, "T1")),
+        ("S1-D-05", Mark(1, "D", 5)),
+        ("S1-V-012-W3", Mark(1, "V", 12, "W3")),
     ],
 )
 def test_marks_as_they_stand_on_planks_and_in_lists(text: str, mark: Mark) -> None:
@@ -55,7 +63,7 @@ def test_every_printed_mark_is_read_back_as_itself(mark: Mark) -> None:
         "S1-A-07", "S1-a1-07", "S1-A1-00", "S1-A1-07-", "S1-A1-07-l", "S1-A1-07-M", "S1-A1-07-LR", "S1-A1-07-L-B1",
         "S1-N-31", "S1-N-0031", "S1-N-000", "S1-N-031-B0", "S1-N-031-B01", "S1-N-031-B", "S1-N-031-B100", "S1-N-031-X1",
         "S1 A1 07", "S1_A1_07", "S1-A1-07 ", " S1-A1-07", "S1-A1-07\n", "S1--A1-07", "A1-07", "R12", "R12-3", "R12-00",
-        "R1-03", "R123-03", "R12-03-B1", "R11-01", "S1-G-05-L", "S1-A1-07-B1", "S1-N-031-L",
+        "R1-03", "R123-03", "R12-03-W1", "R12-03-B0", "R11-01", "S1-G-05-L", "S1-A1-07-B1", "S1-N-031-L",
         "S1-R12-03", "S1-A1-\u0660\u0667", "S1-A1-0\uff17",
         "S-1-A1-07", "S1-A1-+7", "S1-A1--7",
     ],
@@ -70,7 +78,7 @@ def test_a_mark_with_one_sign_changed_is_another_mark_or_none(mark: Mark, data: 
     """Never is a mistyped mark taken for the one that was meant."""
     text = str(mark)
     place = data.draw(st.integers(0, len(text) - 1))
-    sign = data.draw(st.sampled_from("SAGENKFRCPM0123456789-LBWx "))
+    sign = data.draw(st.sampled_from("SAGENKFRCPMDV0123456789-LBWTx "))
     assume(sign != text[place])
     mistyped = text[:place] + sign + text[place + 1 :]
     try:
@@ -121,5 +129,23 @@ def test_every_part_of_a_shell_bears_its_shells_mark(gridshell: Gridshell) -> No
         for plank in shell.planks:
             assert shell_of(plank.mark) == shell.mark
             assert parse_mark(plank.mark).family == plank.family
-        for bolt in shell.bolts:
-            assert shell_of(bolt.mark) == shell.mark
+        assert {shell_of(part.mark) for part in shell_parts(shell)} == {shell.mark}
+    assert {shell_of(part.mark) for part in ridge_parts(gridshell)} == {""}
+
+
+def test_the_letter_of_a_mark_says_what_a_part_is(gridshell: Gridshell) -> None:
+    """Fasteners by their last part, all others by their family; a blade is R and a pair of shells."""
+    kinds: dict[str, set[str]] = {}
+    for part in all_parts(gridshell):
+        mark = parse_mark(part.mark)
+        family = mark.family if mark.shell else "blade"
+        letter = mark.part[0] if mark.part[:1] in ("B", "W", "T") else family
+        kinds.setdefault(letter, set()).add(kind(part))
+    built = {letter: names for letter, names in kinds.items() if letter not in ("P", "M", "D", "V")}
+    assert built == {
+        "A1": {"plank"}, "A2": {"plank"}, "G": {"plank"}, "E": {"plank"}, "N": {"stud"}, "K": {"coupling block"},
+        "B": {"bolt"}, "W": {"screw"}, "T": {"threaded rod"}, "R": {"strap"}, "F": {"shoe"}, "C": {"concrete block"},
+        "blade": {"blade"},
+    }  # fmt: skip
+    cover = {"P": {"strip"}, "M": {"mullion"}, "D": {"clamping bar"}, "V": {"coupling block"}}
+    assert all(kinds[letter] == names for letter, names in cover.items() if letter in kinds)

@@ -1,10 +1,22 @@
 """Equal parts are one product: three congruent shells, one stud for every node, one bolt for every hole."""
 
+import re
 from dataclasses import replace
 
 import pytest
 
-from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Hole, Plank, Screw, Shell, Stud, shell_parts
+from aag_cad.parts.model import (
+    ClampingBar,
+    Gridshell,
+    Hole,
+    Mullion,
+    Plank,
+    Shell,
+    Strap,
+    Strip,
+    all_parts,
+    shell_parts,
+)
 from aag_cad.parts.products import part_frame, product_key, product_name
 
 
@@ -27,13 +39,36 @@ def test_one_stud_fits_every_node(shell: Shell) -> None:
     assert len({product_key(stud) for stud in shell.studs}) == 1
 
 
-def test_bolts_and_screws_are_each_one_product(shell: Shell) -> None:
-    assert len({product_key(bolt) for bolt in shell.bolts}) == 1
-    assert len({product_key(screw) for screw in shell.screws}) == 1
+def test_bolts_are_one_product_for_each_thickness_that_they_clamp(gridshell: Gridshell) -> None:
+    """Beams 48 mm, shoes 12 + 6, straps 12 + 3, blades 12 + 5 mm; but only two sizes are bought."""
+    bolts = [*gridshell.shells[0].bolts, *gridshell.bolts]
+    assert {bolt.grip for bolt in bolts} == {48.0, 18.0, 15.0, 17.0}
+    assert len({product_key(bolt) for bolt in bolts}) == 4
+    assert {product_name(bolt) for bolt in bolts} == {"Bolt M8 x 65", "Bolt M8 x 40"}
 
 
-def test_blocks_differ_at_most_by_the_side_of_their_bolt(shell: Shell) -> None:
-    assert len({product_key(block) for block in shell.blocks}) <= 2
+def test_screws_are_one_product_for_each_size(shell: Shell) -> None:
+    timber = {screw.mark for screw in shell.screws if "-K-" in screw.mark}
+    assert len({product_key(screw) for screw in shell.screws if screw.mark in timber}) == 1
+    assert len({product_key(s) for s in shell.screws}) == len({(s.diameter, s.length) for s in shell.screws})
+
+
+def test_rods_and_concrete_blocks_are_each_one_product(shell: Shell) -> None:
+    """All feet stand at one height; shoes are mirror images in pairs, bent to the slope of their geodesic."""
+    assert len({product_key(rod) for rod in shell.rods}) == 1
+    assert len({product_key(footing) for footing in shell.footings}) == 1
+    assert len({product_key(shoe) for shoe in shell.shoes}) <= 14
+
+
+def test_blades_are_the_same_seven_products_on_every_ridge(gridshell: Gridshell) -> None:
+    ridges = ["R12", "R23", "R31"]
+    first, *others = ([product_key(b) for b in gridshell.blades if b.mark.startswith(ridge)] for ridge in ridges)
+    assert len(first) == 7
+    assert all(other == first for other in others)
+
+
+def test_blocks_of_beams_differ_at_most_by_the_side_of_their_bolt(shell: Shell) -> None:
+    assert len({product_key(block) for block in shell.blocks if "-K-" in block.mark}) <= 2
 
 
 def test_every_plank_of_a_shell_is_a_product_of_its_own(shell: Shell) -> None:
@@ -96,14 +131,16 @@ def test_names_of_products_name_the_thing_and_not_the_shell(gridshell: Gridshell
     assert product_name(shell.blocks[0]) == "Coupling block 120 x 100 x 24"
     assert product_name(shell.bolts[0]) == "Bolt M8 x 65"
     assert product_name(shell.screws[0]) == "Screw 6 x 60"
+    assert product_name(shell.shoes[0]) == "Shoe 90 x 6"
+    assert product_name(shell.footings[0]) == "Concrete block 400 x 380 x 300"
+    assert re.fullmatch(r"Threaded rod M16 x \d{3}(\.\d+)?", product_name(shell.rods[0]))
+    assert re.fullmatch(r"Strap \d{3} x 50 x 3", product_name(shell.straps[0]))
+    assert product_name(gridshell.blades[0]) == "Ridge blade 100 x 5"
+    assert product_name(gridshell.bolts[0]) == "Bolt M8 x 40"
 
 
-def test_planks_are_drawn_in_their_shell_and_hardware_in_its_own_frame(shell: Shell) -> None:
-    assert all(part_frame(plank) is None for plank in shell.planks)
-    hardware: tuple[Stud | CouplingBlock | Bolt | Screw, ...] = (
-        *shell.studs,
-        *shell.blocks,
-        *shell.bolts,
-        *shell.screws,
-    )
-    assert all(part_frame(part) == part.frame for part in hardware)
+def test_what_is_bent_is_drawn_in_its_shell_and_hardware_in_its_own_frame(gridshell: Gridshell) -> None:
+    for part in all_parts(gridshell):
+        bent = isinstance(part, Plank | Strap | Mullion | ClampingBar | Strip)
+        assert (part_frame(part) is None) == bent
+        assert bent or part_frame(part) == getattr(part, "frame", None)

@@ -10,12 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aag_cad.errors import FileError
-from aag_cad.parts.model import Gridshell, Shell
+from aag_cad.parts.model import SCHEMA_VERSION, Gridshell, Shell, all_parts
 from aag_cad.parts.store import gridshell_json, read_gridshell
 
 
 def small(gridshell: Gridshell) -> Gridshell:
-    """Return a gridshell of one shell with two planks, a beam and one part of each other kind."""
+    """Return a gridshell of one shell with two planks, a beam and one part of each other kind, and a blade."""
     shell = gridshell.shells[0]
     few: Shell = replace(
         shell,
@@ -26,8 +26,16 @@ def small(gridshell: Gridshell) -> Gridshell:
         bolts=shell.bolts[:1],
         screws=shell.screws[:1],
         joints=shell.joints[:2],
+        straps=shell.straps[:1],
+        shoes=shell.shoes[:1],
+        rods=shell.rods[:1],
+        footings=shell.footings[:1],
+        mullions=shell.mullions[:1],
+        strips=shell.strips[:1],
+        clamps=shell.clamps[:1],
     )
-    return replace(gridshell, shells=(few,))
+    blades, bolts, joints = gridshell.blades[:1], gridshell.bolts[:1], gridshell.joints[:1]
+    return replace(gridshell, shells=(few,), blades=blades, bolts=bolts, joints=joints)
 
 
 @pytest.fixture(scope="module")
@@ -70,15 +78,15 @@ def test_the_same_gridshell_is_written_in_the_same_bytes(gridshell: Gridshell) -
 
 def test_the_file_is_plain_json_with_its_version(text: str) -> None:
     data = json.loads(text, parse_constant=lambda name: pytest.fail(f"{name} is no JSON number"))
-    assert data["schema_version"] == 1
+    assert data["schema_version"] == SCHEMA_VERSION == 2
     assert data["name"] == "vault"
     assert data["shells"][0]["planks"][0]["mark"] == "S1-A1-01-L"
 
 
-@pytest.mark.parametrize("version", [0, 2, "1", None])
+@pytest.mark.parametrize("version", [0, 1, 3, "2", 2.5, None])
 def test_another_version_is_refused_with_both_versions_and_a_remedy(text: str, version: Any) -> None:
     wrong = exchanged(text, ("schema_version",), version)
-    with pytest.raises(FileError, match=rf"schema_version {version!r}, this program reads 1; build the design again"):
+    with pytest.raises(FileError, match=rf"schema_version {version!r}, this program reads 2; build the design again"):
         read_gridshell(wrong)
 
 
@@ -92,6 +100,12 @@ def test_broken_json_is_called_so(broken: str) -> None:
 def test_json_that_is_no_gridshell_is_refused(other: str) -> None:
     with pytest.raises(FileError, match=r"gridshell\.json: schema_version None"):
         read_gridshell(other)
+
+
+def test_the_small_gridshell_holds_a_part_of_every_kind(gridshell: Gridshell) -> None:
+    """So that every kind is tried with exchanged values."""
+    kinds = {type(part) for part in all_parts(gridshell)}
+    assert {type(part) for part in all_parts(small(gridshell))} == kinds
 
 
 def test_a_file_cut_short_is_refused(text: str) -> None:

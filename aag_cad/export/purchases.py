@@ -1,0 +1,97 @@
+"""Purchase list and cutting list as CSV: one header line, LF; lengths in mm or m as named, masses in kg."""
+
+import csv
+import io
+import os
+from collections.abc import Iterable, Iterator, Sequence
+
+from aag_cad.audit import Finding
+from aag_cad.files import write_text
+from aag_cad.shop.purchases import CutStock, Purchase, Purchases
+
+PURCHASES_HEADER = (
+    "item", "size_mm", "standard", "quantity", "unit", "length_m", "volume_m3", "mass_kg", "for",
+)  # fmt: skip
+CUTTING_HEADER = (
+    "stock", "number", "stock_length_mm", "position_mm", "cut_length_mm", "mark", "length_mm", "piece", "note",
+)  # fmt: skip
+
+
+def purchase_findings(purchases: Purchases) -> list[Finding]:
+    """Return what the stock cannot give: parts that are too long (AAG901), old planks (AAG902), strips (AAG903)."""
+    return [
+        Finding(
+            refusal.code, "note" if refusal.code == "AAG902" else "error", refusal.mark, refusal.what, refusal.found,
+            refusal.allowed, refusal.unit, refusal.remedy,
+        )
+        for refusal in purchases.refused
+    ]  # fmt: skip
+
+
+def purchase_row(line: Purchase) -> tuple[str, ...]:
+    """Return one line of the purchase list, in the order of ``PURCHASES_HEADER``."""
+    return (
+        line.item,
+        line.size,
+        line.standard,
+        str(line.quantity),
+        line.unit,
+        f"{line.length_m:.3f}" if line.length_m else "",
+        f"{line.volume_m3:.4f}" if line.volume_m3 else "",
+        f"{line.mass_kg:.2f}",
+        line.use,
+    )
+
+
+def _cut_rows(cut: CutStock) -> Iterator[tuple[str, ...]]:
+    for board in cut.plan.boards:
+        for place in board.cuts:
+            for piece in place.pieces:
+                yield (
+                    f"{cut.item} {cut.section}",
+                    str(board.number),
+                    f"{board.length:g}",
+                    f"{place.position:.1f}",
+                    f"{place.length:.1f}",
+                    piece.mark,
+                    f"{piece.length:.1f}",
+                    f"{piece.number}/{piece.of}",
+                    "" if piece.of == 1 else "finger-jointed",
+                )
+
+
+def cutting_rows(purchases: Purchases) -> Iterator[tuple[str, ...]]:
+    """Yield the cutting list in the order of ``CUTTING_HEADER``: old planks, boards, bars, then sheets.
+
+    Pieces with the same position on a board are split from one cut; each is then cut to its own length.
+    """
+    for item in purchases.reused:
+        notes = [note for note, holds in (("turned", item.turned), ("face down", item.face_down)) if holds]
+        length = f"{item.length:.1f}"
+        yield "old plank", item.old, "", f"{item.start:.1f}", length, item.mark, length, "1/1", ", ".join(notes)
+    for cut in purchases.cut:
+        yield from _cut_rows(cut)
+    sheets = purchases.sheets
+    for sheet in sheets.sheets:
+        for strip in sheet.strips:
+            note = f"across {strip.y:.1f}" + (", turned" if strip.turned else "")
+            name = f"{purchases.sheet} {sheets.width:g}"
+            yield name, str(sheet.number), f"{sheet.length:g}", f"{strip.x:.1f}", "", strip.mark, "", "1/1", note
+
+
+def _csv(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(rows)
+    return out.getvalue()
+
+
+def write_purchases(purchases: Purchases, path: str | os.PathLike[str]) -> None:
+    """Write the purchase list, without spares; FileError if the file cannot be written."""
+    write_text(path, _csv(PURCHASES_HEADER, (purchase_row(line) for line in purchases.lines)))
+
+
+def write_cutting(purchases: Purchases, path: str | os.PathLike[str]) -> None:
+    """Write the cutting list, one line for every piece; FileError if the file cannot be written."""
+    write_text(path, _csv(CUTTING_HEADER, cutting_rows(purchases)))

@@ -1,0 +1,346 @@
+"""What is bought for a gridshell and how it is cut: boards, bars, sheets, fasteners and what comes ready made."""
+
+import math
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from aag_cad.design import Design
+from aag_cad.parts.model import (
+    Blade,
+    Bolt,
+    ClampingBar,
+    CouplingBlock,
+    Footing,
+    Gridshell,
+    JointKind,
+    Mullion,
+    Part,
+    Plank,
+    Rod,
+    Screw,
+    Shoe,
+    Strap,
+    Strip,
+    Stud,
+    all_joints,
+    all_parts,
+)
+from aag_cad.parts.quantities import (
+    STEEL_DENSITY,
+    circle_area,
+    density,
+    hexagon_area,
+    kind,
+    mass,
+    material_name,
+    sizes,
+    volume,
+)
+from aag_cad.parts.strips import flat_pattern
+from aag_cad.shop.finger_joints import FingerJoint, board_rules, plank_pieces
+from aag_cad.shop.offcuts import Reused, fitting_planks, read_offcuts, reused_planks
+from aag_cad.shop.sheets import SheetPlan, SheetRules, sheet_plan
+from aag_cad.shop.stock import CuttingPlan, Piece, Refusal, StockRules, cutting_plan
+from aag_cad.units import MM3_PER_M3, MM_PER_M
+
+_USES: dict[JointKind, str] = {
+    "AA": "AA nodes",
+    "AG": "AG crossings",
+    "boundary": "edge planks",
+    "foot": "feet",
+    "footing": "footings",
+    "ridge": "ridge ends",
+    "blade": "ridge blades",
+    "cover": "cover",
+}
+
+
+@dataclass(frozen=True)
+class Purchase:
+    """A line of the purchase list; lengths and volumes are 0 where nobody buys by them."""
+
+    item: str
+    size: str
+    standard: str
+    quantity: int
+    unit: str
+    length_m: float
+    volume_m3: float
+    mass_kg: float
+    use: str
+
+
+@dataclass(frozen=True)
+class CutStock:
+    """Boards or bars of one section: what they are, width and thickness in mm, density in kg/m3, and their cuts.
+
+    ``standing`` is the volume of the parts before drilling that come out of them, mm3.
+    """
+
+    item: str
+    width: float
+    thickness: float
+    standard: str
+    density: float
+    use: str
+    plan: CuttingPlan
+    standing: float
+
+    @property
+    def section(self) -> str:
+        """The section as it is ordered, thickness first."""
+        return f"{self.thickness:g} x {self.width:g}"
+
+
+@dataclass(frozen=True)
+class Purchases:
+    """All that is bought, how it is cut, what is cut from old planks, and what the stock cannot give."""
+
+    cut: tuple[CutStock, ...]
+    sheets: SheetPlan
+    sheet: str
+    reused: tuple[Reused, ...]
+    finger_joints: tuple[FingerJoint, ...]
+    refused: tuple[Refusal, ...]
+    lines: tuple[Purchase, ...]
+
+
+def _bar(part: Part) -> tuple[str, float, float, str] | None:
+    """Return (item, width, thickness, standard) of the bar that a part is cut from, or None if it is from no bar.
+
+    A hexagonal stud is planed from a bar as thick as its flats are apart and as wide as its corners.
+    """
+    match part:
+        case Stud():
+            return "timber bar", float(math.ceil(part.across_flats * 2.0 / math.sqrt(3.0))), part.across_flats, "EN 338"
+        case CouplingBlock():
+            return "timber bar", part.width, part.thickness, "EN 338"
+        case Mullion() | ClampingBar():
+            return "aluminium flat bar", part.blank.section.width, part.blank.section.thickness, "EN 755-5"
+        case Strap():
+            return "steel flat bar", part.blank.section.width, part.blank.section.thickness, "EN 10058"
+        case _:
+            return None
+
+
+def _plural(parts: Iterable[Part]) -> str:
+    return ", ".join(f"{name}s" for name in sorted({kind(part) for part in parts}))
+
+
+def _bars(gridshell: Gridshell, design: Design) -> tuple[list[CutStock], list[Refusal]]:
+    """Return the bars of timber, aluminium and steel with their cuts, and the parts that are longer than all bars."""
+    stock = design.stock
+    groups: dict[tuple[str, float, float, str], list[Part]] = defaultdict(list)
+    for part in all_parts(gridshell):
+        if bar := _bar(part):
+            groups[bar].append(part)
+    bars, refused = [], []
+    for (item, width, thickness, standard), parts in sorted(groups.items()):
+        key = "bar_lengths" if item == "timber bar" else "metal_lengths"
+        rules = StockRules(stock.bar_lengths if key == "bar_lengths" else stock.metal_lengths, stock.kerf, stock.trim)
+        plan = cutting_plan((Piece(part.mark, sizes(part)[0]) for part in parts), rules)
+        name = item.replace("timber", material_name(parts[0], gridshell.timber))
+        held = {piece.mark for piece in plan.refused}
+        net = math.fsum(volume(part) for part in parts if part.mark not in held)
+        bars.append(
+            CutStock(name, width, thickness, standard, density(parts[0], gridshell.timber), _plural(parts), plan, net)
+        )
+        remedy = f"add a longer bar to stock.{key}"
+        refused += [
+            Refusal("AAG901", piece.mark, f"longer than what the longest {item} gives,", piece.length,
+                    rules.longest_cut, "mm", remedy)
+            for piece in plan.refused
+        ]  # fmt: skip
+    return bars, refused
+
+
+def _boards(
+    planks: list[Plank], gridshell: Gridshell, design: Design
+) -> tuple[CutStock, tuple[FingerJoint, ...], tuple[Refusal, ...]]:
+    """Return the boards for new planks with their cuts, their finger joints, and the planks that no board gives."""
+    stock, timber = design.stock, design.timber
+    pieces, joints, refused = plank_pieces(planks, stock)
+    made = {piece.mark for piece in pieces}
+    thick = stock.planks_per_board * timber.thickness + (stock.planks_per_board - 1) * stock.split_kerf
+    board = CutStock(
+        item=f"{gridshell.timber.species} {gridshell.timber.strength_class} board",
+        width=timber.width,
+        thickness=stock.board_thickness or thick,
+        standard="EN 338",
+        density=gridshell.timber.density,
+        use="planks",
+        plan=cutting_plan(pieces, board_rules(stock)),
+        standing=math.fsum(volume(plank) for plank in planks if plank.mark in made),
+    )
+    return board, joints, refused
+
+
+def _cut_lines(cut: CutStock) -> list[Purchase]:
+    lines = []
+    for length, count in cut.plan.counts.items():
+        cubic = count * length * cut.width * cut.thickness / MM3_PER_M3
+        lines.append(
+            Purchase(
+                cut.item, f"{cut.section} x {length:g}", cut.standard, count, "pcs", count * length / MM_PER_M, cubic,
+                cubic * cut.density, cut.use,
+            )
+        )  # fmt: skip
+    return lines
+
+
+def _fasteners(part: Part) -> list[tuple[str, str, str, int, float]]:
+    """Return (item, size, standard, quantity, volume of one in mm3) of what is bought for a fastener."""
+    match part:
+        case Bolt() | Rod():
+            thread, shank = f"M{part.diameter:g}", circle_area(part.diameter)
+            nut = (hexagon_area(part.across_flats) - shank) * part.nut_height
+            washer = (circle_area(part.washer_diameter) - shank) * part.washer_thickness
+            bolt = shank * part.length
+            if isinstance(part, Bolt):
+                bolt += hexagon_area(part.across_flats) * part.head_height
+                first = ("hexagon bolt", f"{thread} x {part.length:g}", "ISO 4014", 1, bolt)
+            else:
+                first = ("threaded rod", f"{thread} x {math.ceil(part.length)}", "DIN 976-1", 1, bolt)
+            nuts = 1 if isinstance(part, Bolt) else 2
+            return [
+                first,
+                ("hexagon nut", thread, "ISO 4032", nuts, nut),
+                ("washer", thread, "ISO 7093-1", 2, washer),
+            ]
+        case Screw():
+            size = f"{part.diameter:g} x {part.length:g}"
+            return [("countersunk wood screw", size, "DIN 7997", 1, volume(part))]
+        case _:
+            return []
+
+
+def _fastener_lines(gridshell: Gridshell) -> list[Purchase]:
+    use_of = {mark: _USES[joint.kind] for joint in all_joints(gridshell) for mark in joint.fasteners}
+    counts: Counter[tuple[str, str, str]] = Counter()
+    volumes: dict[tuple[str, str, str], list[float]] = defaultdict(list)
+    uses: dict[tuple[str, str, str], set[str]] = defaultdict(set)
+    for part in all_parts(gridshell):
+        for item, size, standard, quantity, one in _fasteners(part):
+            key = (item, size, standard)
+            counts[key] += quantity
+            volumes[key].append(quantity * one)
+            uses[key].add(use_of.get(part.mark, ""))
+    return [
+        Purchase(item, size, standard, counts[item, size, standard], "pcs", 0.0, 0.0,
+                 math.fsum(volumes[item, size, standard]) * STEEL_DENSITY / MM3_PER_M3,
+                 ", ".join(sorted(use for use in uses[item, size, standard] if use)))
+        for item, size, standard in sorted(counts)
+    ]  # fmt: skip
+
+
+def _ready_made_lines(gridshell: Gridshell) -> list[Purchase]:
+    """Return what is ordered by the piece: folded steel plates by their flat size, concrete blocks."""
+    groups: dict[tuple[str, str, str], list[Part]] = defaultdict(list)
+    for part in all_parts(gridshell):
+        length, width, thickness = sizes(part) if isinstance(part, Shoe | Blade | Footing) else (0.0, 0.0, 0.0)
+        if isinstance(part, Footing):
+            groups["precast concrete block", f"{length:g} x {width:g} x {thickness:g}", "EN 13369"].append(part)
+        elif isinstance(part, Shoe | Blade):
+            item = f"steel plate, folded to a {kind(part)}"
+            groups[item, f"{thickness:g} x {width:g} x {length:.0f}", "EN 10025-2"].append(part)
+    lines = []
+    for (item, size, standard), parts in sorted(groups.items()):
+        cubic = math.fsum(volume(part) for part in parts) / MM3_PER_M3
+        weight = math.fsum(mass(part, gridshell.timber) for part in parts)
+        use = "footings" if isinstance(parts[0], Footing) else _plural(parts)
+        lines.append(Purchase(item, size, standard, len(parts), "pcs", 0.0, cubic, weight, use))
+    return lines
+
+
+def _sheet_lines(plan: SheetPlan, item: str, thickness: float, strip_density: float) -> list[Purchase]:
+    lines = []
+    for length, count in sorted(Counter(sheet.length for sheet in plan.sheets).items()):
+        cubic = count * length * plan.width * thickness / MM3_PER_M3
+        size = f"{thickness:g} x {plan.width:g} x {length:g}"
+        lines.append(
+            Purchase(item, size, "EN 16153", count, "pcs", count * length / MM_PER_M, cubic, cubic * strip_density,
+                     "strips")
+        )  # fmt: skip
+    return lines
+
+
+def purchases_of(gridshell: Gridshell, design: Design) -> Purchases:
+    """Return what is bought for a gridshell, without spares, and how it is cut.
+
+    Planks come from the old planks of ``stock.offcuts`` first, as many metres as these give, then from boards.
+    FileError if the table of old planks cannot be read.
+    """
+    stock = design.stock
+    parts = all_parts(gridshell)
+    planks = [part for part in parts if isinstance(part, Plank)]
+    strips = [part for part in parts if isinstance(part, Strip)]
+    old, refused_old = fitting_planks(read_offcuts(Path(stock.offcuts)) if stock.offcuts else (), design.timber)
+    reused = reused_planks(planks, old, stock) if old else ()
+    done = {item.mark for item in reused}
+    board, joints, too_long = _boards([plank for plank in planks if plank.mark not in done], gridshell, design)
+    bars, too_long_bars = _bars(gridshell, design)
+    outlines = [(strip.mark, flat_pattern(strip).outline) for strip in strips]
+    sheets = sheet_plan(outlines, SheetRules(design.facade.sheet_width, design.facade.sheet_lengths, stock.sheet_gap))
+    sheet = "multiwall polycarbonate sheet"
+    lines = [line for cut in (board, *bars) for line in _cut_lines(cut)]
+    if strips:
+        lines += _sheet_lines(sheets, sheet, strips[0].thickness, density(strips[0], gridshell.timber))
+    if reused:
+        section = f"{design.timber.thickness:g} x {design.timber.width:g}"
+        metres = math.fsum(item.length for item in reused) / MM_PER_M
+        cubic = metres * design.timber.thickness * design.timber.width / 1e6
+        count = len({item.old for item in reused})
+        lines.append(Purchase("old plank", section, "", count, "pcs", metres, cubic, cubic * design.timber.density,
+                              "planks"))  # fmt: skip
+    lines += _fastener_lines(gridshell) + _ready_made_lines(gridshell)
+    refused = (*refused_old, *too_long, *too_long_bars, *sheets.refused)
+    return Purchases((board, *bars), sheets, sheet, reused, joints, refused, tuple(lines))
+
+
+def _cut_summary(cut: CutStock) -> dict[str, Any]:
+    plan = cut.plan
+    bought = plan.bought * cut.width * cut.thickness
+    return {
+        "bought_m": round(plan.bought / MM_PER_M, 3),
+        "used_m": round(plan.used / MM_PER_M, 3),
+        "waste_m": round(plan.waste / MM_PER_M, 3),
+        "waste_percent": round(plan.waste_percent, 2),
+        "waste_percent_of_volume": round(100.0 * (1.0 - cut.standing / bought), 2) if bought else 0.0,
+        "pieces": {f"{length:g}": count for length, count in plan.counts.items()},
+        "bound_m": round(plan.bound / MM_PER_M, 3),
+        "proven": plan.proven,
+        "first_fit_decreasing_m": round(plan.first_fit_decreasing / MM_PER_M, 3),
+        "refused": len(plan.refused),
+    }
+
+
+def stock_summary(purchases: Purchases) -> dict[str, Any]:
+    """Return for each thing that is cut how much is bought, used and wasted, with the bound and whether it is proven.
+
+    Lengths in metres; those of boards and bars are of the board or bar, those of sheets along the ribs.
+    """
+    table: dict[str, Any] = {f"{cut.item} {cut.section}": _cut_summary(cut) for cut in purchases.cut}
+    sheets = purchases.sheets
+    if sheets.sheets:
+        table[f"{purchases.sheet} {sheets.width:g}"] = {
+            "bought_m": round(sheets.bought / MM_PER_M, 3),
+            "waste_percent_of_area": round(sheets.waste_percent, 2),
+            "pieces": _counted(f"{sheet.length:g}" for sheet in sheets.sheets),
+            "bound_m": round(sheets.bound / MM_PER_M, 3),
+            "proven": sheets.proven,
+            "first_fit_decreasing_m": round(sheets.first_fit_decreasing / MM_PER_M, 3),
+            "refused": len(sheets.refused),
+        }
+    table["old planks"] = {
+        "planks": len(purchases.reused),
+        "used_m": round(math.fsum(item.length for item in purchases.reused) / MM_PER_M, 3),
+    }
+    table["finger joints"] = len(purchases.finger_joints)
+    return table
+
+
+def _counted(names: Iterable[str]) -> Mapping[str, int]:
+    return dict(sorted(Counter(names).items()))
