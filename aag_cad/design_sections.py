@@ -1,9 +1,12 @@
 """The tables of the design file and what each key may be."""
 
+import re
 import tomllib
+from datetime import date
 from typing import Annotated, Literal, TypeAlias
 
 from pydantic import (
+    AfterValidator,
     BaseModel,
     ConfigDict,
     Discriminator,
@@ -24,6 +27,13 @@ Text: TypeAlias = Annotated[
     str, StringConstraints(strip_whitespace=True, min_length=1, max_length=80, pattern=r"^[^\x00-\x1f]+$")
 ]
 Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]*$", max_length=40)]
+
+
+def _iso_date(value: str) -> str:
+    if not re.fullmatch(r"\d{4}-\d{2}-\d{2}", value):
+        raise ValueError("a date is written year-month-day, like 2027-03-01")
+    date.fromisoformat(value)
+    return value
 
 
 class Section(BaseModel):
@@ -268,11 +278,51 @@ class Transport(Section):
     mass: Positive
 
 
+class Minutes(Section):
+    """Minutes of work of one person, by what is done: our estimate, to be replaced by measured times.
+
+    Bolts and screws are those of timber and steel joints; a part is also carried to its place, by its length.
+    """
+
+    setup: NotNegative = Field(10.0, description="for each person of a step: read its card, fetch tools and parts")
+    carry: NotNegative = Field(0.5, description="a metre of a long piece to its place")
+    plank: NotNegative = Field(3.0, description="find a plank of a beam and line it up with its sibling")
+    block: NotNegative = Field(2.0, description="set a coupling block")
+    bolt: NotNegative = Field(2.0, description="put a bolt through, with washers and nut")
+    tighten: NotNegative = Field(0.5, description="tighten a bolt and mark it")
+    beam: NotNegative = Field(8.0, description="lay a beam on its line and chock it")
+    geodesic: NotNegative = Field(5.0, description="lay a geodesic between its marks")
+    stud: NotNegative = Field(4.0, description="line up two beams and push the stud through")
+    hoist: NotNegative = Field(720.0, description="sling, hoist, shape and prop a shell")
+    edge_plank: NotNegative = Field(40.0, description="push an edge plank in and clamp it")
+    screw: NotNegative = Field(1.5, description="pre-drill and drive a screw")
+    strap: NotNegative = Field(3.0, description="hold a strap to its holes")
+    footing: NotNegative = Field(30.0, description="peg out, dig, set and level a concrete block")
+    rod: NotNegative = Field(3.0, description="set the nuts of a threaded rod to height")
+    shoe: NotNegative = Field(6.0, description="set a shoe on its rod")
+    stand: NotNegative = Field(720.0, description="carry a shell to its feet, lower and prop it")
+    ridge: NotNegative = Field(120.0, description="draw two shells together along their ridge")
+    blade: NotNegative = Field(8.0, description="fit a blade")
+    mullion: NotNegative = Field(10.0, description="bend a mullion into place")
+    strip: NotNegative = Field(25.0, description="bend a strip into place, with its tapes")
+    clamp: NotNegative = Field(8.0, description="lay a clamping bar over two strips")
+    prop: NotNegative = Field(120.0, description="prop a standing shell for taking down")
+    lower: NotNegative = Field(480.0, description="lower a shell from its shape to the floor")
+    removal: NotNegative = Field(0.5, description="share of the time of putting a part in that taking it out needs")
+    measure: NotNegative = Field(8.0, description="measure a plank for its reuse passport")
+
+
 class Crew(Section):
-    """Who assembles it."""
+    """Who assembles it, and how long a day."""
 
     people: Annotated[Count, Field(ge=1, le=40)]
     lift_limit: Positive = Field(description="kg per person")
+    hours_per_day: Annotated[Number, Field(ge=1, le=16)] = Field(8.0, description="of work, without breaks")
+    days_per_week: Annotated[Count, Field(ge=1, le=7)] = Field(5, description="of work, from Monday on")
+    start: Annotated[str, AfterValidator(_iso_date)] | None = Field(
+        None, description="first working day as text, year-month-day, for the calendar"
+    )
+    minutes: Minutes = Field(Minutes(), description="of one person, by what is done, in place of our estimates")
 
 
 class Stock(Section):

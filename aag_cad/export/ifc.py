@@ -1,20 +1,38 @@
-"""The gridshell as an IFC4 Reference View file: vault > shell > coupled beam > plank, with all that joins them."""
+"""The gridshell as an IFC file: vault > shell > coupled beam > part, with all that joins them and when it is built."""
 
 import os
 from collections.abc import Mapping, Sequence
 
-from aag_cad.export.ifc_base import Entity, IfcModel, aggregate, guid, local_placement, spatial_tree, start_file
+from aag_cad.export.ifc_assembly_sets import write_assembly_sets
+from aag_cad.export.ifc_base import Entity, IfcModel, aggregate, local_placement, rooted, start_file
 from aag_cad.export.ifc_bodies import mapped_shape
 from aag_cad.export.ifc_joints import write_joints
 from aag_cad.export.ifc_kinds import IFC_KINDS
-from aag_cad.export.ifc_properties import write_piece_sets, write_product_sets
+from aag_cad.export.ifc_materials import associate_materials
+from aag_cad.export.ifc_properties import write_fabrication
 from aag_cad.export.ifc_schedule import write_schedule
-from aag_cad.export.ifc_types import Product, associate_materials, define_types, products
+from aag_cad.export.ifc_schemas import IfcOptions, IfcSchema, require_known, type_word
+from aag_cad.export.ifc_site import spatial_tree
+from aag_cad.export.ifc_standard_sets import write_product_sets, write_serial_numbers
+from aag_cad.export.ifc_types import Product, define_types, products
 from aag_cad.files import replacing
 from aag_cad.parts.assemblies import beam_of_parts
-from aag_cad.parts.model import Frame, Gridshell, Part, Shell, all_joints, all_parts, ridge_parts, shell_parts
+from aag_cad.parts.model import (
+    Footing,
+    Frame,
+    Gridshell,
+    Part,
+    Shell,
+    all_joints,
+    all_parts,
+    ridge_parts,
+    shell_parts,
+)
 from aag_cad.parts.products import part_frame
+from aag_cad.shop.groups import all_planks, drill_groups
 from assembly.steps import Step
+
+__all__ = ["IfcOptions", "IfcSchema", "ifc_model", "write_ifc"]
 
 # Not the gridshell's name: that could be the word for another entity, such as "site".
 _VAULT = "gridshell"
@@ -23,17 +41,19 @@ _VAULT = "gridshell"
 def _assembly(
     model: IfcModel, ident: str, mark: str, title: str, place: str, parent: Entity, frame: Frame | None = None
 ) -> Entity:
-    return model.file.create_entity(
-        "IfcElementAssembly", guid(model.project_id, ident), None, mark, None, title,
-        local_placement(model, parent, frame), Tag=mark, AssemblyPlace=place, PredefinedType="USERDEFINED",
+    return rooted(
+        model, "IfcElementAssembly", (ident,), mark, None, title, local_placement(model, parent, frame),
+        Tag=mark, AssemblyPlace=place, PredefinedType="USERDEFINED",
     )  # fmt: skip
 
 
 def _occurrence(model: IfcModel, part: Part, product: Product, parent: Entity, unmoved: Entity) -> Entity:
     kind = IFC_KINDS[type(part)]
-    return model.file.create_entity(
-        kind.entity, guid(model.project_id, part.mark), None, part.mark, None, kind.element_type,
-        local_placement(model, parent, part_frame(part)), mapped_shape(model, product.maps, unmoved), part.mark,
+    # Its type says what it is; only footings of IFC2X3 have to say so themselves.
+    own = {"PredefinedType": kind.predefined} if model.schema == "IFC2X3" and isinstance(part, Footing) else {}
+    return rooted(
+        model, kind.entity, (part.mark,), part.mark, None, type_word(model.schema, kind),
+        local_placement(model, parent, part_frame(part)), mapped_shape(model, product.maps, unmoved), part.mark, **own,
     )  # fmt: skip
 
 
@@ -75,15 +95,33 @@ def _write_vault(
     }
     elements |= between
     aggregate(model, _VAULT, vault, [*(elements[shell.mark] for shell in gridshell.shells), *between.values()])
-    model.file.create_entity(
-        "IfcRelContainedInSpatialStructure", guid(model.project_id, "contained"), None, None, None, [vault], storey
-    )
+    rooted(model, "IfcRelContainedInSpatialStructure", ("contained",), None, None, [vault], storey)
     return elements
 
 
-def ifc_model(gridshell: Gridshell, steps: Sequence[Step] | None = None) -> IfcModel:
-    """Return the gridshell as an open IFC file; the steps of a plan become a work schedule."""
-    model = start_file(gridshell)
+def _write_sets(
+    model: IfcModel, gridshell: Gridshell, found: Sequence[Product], elements: Mapping[str, Entity]
+) -> None:
+    """Write the property and quantity sets of all parts."""
+    planks, timber = all_planks(gridshell), gridshell.timber
+    groups = {member.mark: group.mark for group in drill_groups(planks) for member in group.members}
+    for product in found:
+        write_product_sets(model, product.key, product.parts, elements, timber)
+    write_fabrication(model, [(product.key, product.parts) for product in found], elements, timber, groups)
+    write_serial_numbers(model, planks, elements, groups)
+
+
+def ifc_model(
+    gridshell: Gridshell, steps: Sequence[Step] | None = None, options: IfcOptions | None = None
+) -> IfcModel:
+    """Return the gridshell as an open IFC file; the steps of a plan become a work schedule.
+
+    IFC2X3 has no task times: there the steps are only named in the set ``AAG_Assembly``. DesignError if the options do
+    not go together.
+    """
+    options = options or IfcOptions()
+    require_known(options)
+    model = start_file(gridshell, options)
     storey = spatial_tree(model, gridshell)
     parts = all_parts(gridshell)
     found = products(model, parts)
@@ -91,20 +129,25 @@ def ifc_model(gridshell: Gridshell, steps: Sequence[Step] | None = None) -> IfcM
     elements = _write_vault(model, gridshell, storey, product_of)
     define_types(model, found, elements)
     associate_materials(model, found, elements, gridshell.timber)
-    for product in found:
-        write_product_sets(model, product.key, product.parts, elements, gridshell.timber)
-    write_piece_sets(model, parts, elements)
+    _write_sets(model, gridshell, found, elements)
+    write_assembly_sets(model, parts, elements, steps or ())
     write_joints(model, all_joints(gridshell), {part.mark: part for part in parts}, elements)
-    if steps is not None:
-        write_schedule(model, gridshell.name, steps, elements)
+    if steps is not None and options.schema != "IFC2X3":
+        write_schedule(model, gridshell, steps, elements)
     return model
 
 
-def write_ifc(gridshell: Gridshell, path: str | os.PathLike[str], steps: Sequence[Step] | None = None) -> None:
+def write_ifc(
+    gridshell: Gridshell,
+    path: str | os.PathLike[str],
+    steps: Sequence[Step] | None = None,
+    options: IfcOptions | None = None,
+) -> None:
     """Write the gridshell, and the steps of its plan as a work schedule; FileError if the file cannot be written.
 
-    The bodies are planks without holes: hole tables are in the property set ``AAG_Fabrication``.
+    The bodies are planks without holes: hole tables are in the property set ``AAG_Fabrication``. DesignError if the
+    options do not go together.
     """
-    model = ifc_model(gridshell, steps)
+    model = ifc_model(gridshell, steps, options)
     with replacing(path) as draft:
         draft.write_text(model.file.to_string(), encoding="utf-8", newline="\n")

@@ -1,16 +1,17 @@
-"""Shapes of the products in IFC: triangulated bodies of timber, extruded bodies of steel, axes of planks, colours."""
+"""Shapes of the products in IFC: triangulated or B-spline bodies, extruded fasteners, axes of planks, colours."""
 
 from collections.abc import Iterable
 
 import numpy as np
 
 from aag_cad.export.ifc_base import Entity, IfcModel
+from aag_cad.export.ifc_brep import advanced_brep
 from aag_cad.export.ifc_kinds import colour, colour_name
 from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
 from aag_cad.parts.forming import plank_axes
 from aag_cad.parts.mesh import MESH_SPACING, product_mesh
-from aag_cad.parts.model import Bolt, Part, Plank, Rod, Screw
-from aag_cad.parts.triangles import regular_polygon
+from aag_cad.parts.model import Bolt, FlatBar, Part, Plank, Rod, Screw
+from aag_cad.parts.triangles import Mesh, regular_polygon
 from aag_cad.units import Floats
 
 _DIGITS = 3
@@ -22,11 +23,21 @@ def _coordinates(points: Floats) -> list[list[float]]:
     return rows
 
 
-def face_set(model: IfcModel, part: Part) -> Entity:
-    """Return the closed triangulated face set of a part's product."""
-    mesh = product_mesh(part)
+def face_set(model: IfcModel, mesh: Mesh) -> Entity:
+    """Return a closed mesh as a triangulated face set."""
     points = model.file.create_entity("IfcCartesianPointList3D", _coordinates(mesh.vertices))
     return model.file.create_entity("IfcTriangulatedFaceSet", points, None, True, (mesh.faces + 1).tolist())
+
+
+def faceted_brep(model: IfcModel, mesh: Mesh) -> Entity:
+    """Return a closed mesh as a faceted boundary representation: IFC2X3 has no face sets."""
+    new = model.file.create_entity
+    points = [new("IfcCartesianPoint", point) for point in _coordinates(mesh.vertices)]
+    faces = []
+    for face in mesh.faces.tolist():
+        bound = new("IfcFaceOuterBound", new("IfcPolyLoop", [points[corner] for corner in face]), True)
+        faces.append(new("IfcFace", [bound]))
+    return new("IfcFacetedBrep", new("IfcClosedShell", faces))
 
 
 def _hexagon(model: IfcModel, across_flats: float) -> Entity:
@@ -37,7 +48,10 @@ def _hexagon(model: IfcModel, across_flats: float) -> Entity:
 
 
 def _circle(model: IfcModel, diameter: float) -> Entity:
-    return model.file.create_entity("IfcCircleProfileDef", "AREA", None, None, diameter / 2.0)
+    # Only IFC2X3 demands a position, which is no other than the origin.
+    centre = model.file.create_entity("IfcCartesianPoint", (0.0, 0.0)) if model.schema == "IFC2X3" else None
+    position = centre and model.file.create_entity("IfcAxis2Placement2D", centre)
+    return model.file.create_entity("IfcCircleProfileDef", "AREA", None, position, diameter / 2.0)
 
 
 def extrusion(model: IfcModel, profile: Entity, low: float, high: float) -> Entity:
@@ -65,23 +79,32 @@ def _body(model: IfcModel, part: Part) -> tuple[str, list[Entity]]:
             return "SweptSolid", _threaded_solids(model, rod_pieces(part))
         case Screw():
             return "SweptSolid", [extrusion(model, _circle(model, part.diameter), 0.0, part.length)]
+        case _ if model.options.geometry == "brep" and isinstance(part, FlatBar):
+            return "AdvancedBrep", [advanced_brep(model, part)]
+        case _ if model.schema == "IFC2X3":
+            return "Brep", [faceted_brep(model, product_mesh(part))]
         case _:
-            return "Tessellation", [face_set(model, part)]
+            return "Tessellation", [face_set(model, product_mesh(part))]
 
 
 def _axis(model: IfcModel, plank: Plank) -> Entity:
     """Return the centre line of a formed plank through the centres of the rings of its body."""
     count = max(2, int(np.ceil(plank.blank.length / MESH_SPACING)) + 1)
     centres = plank_axes(plank, np.linspace(0.0, plank.blank.length, count))[0]
+    if model.schema == "IFC2X3":
+        corners = [model.file.create_entity("IfcCartesianPoint", point) for point in _coordinates(centres)]
+        return model.file.create_entity("IfcPolyline", corners)
     points = model.file.create_entity("IfcCartesianPointList3D", _coordinates(centres))
     return model.file.create_entity("IfcIndexedPolyCurve", points)
 
 
 def surface_style(model: IfcModel, part: Part) -> Entity:
-    """Return the surface style of a part's family."""
+    """Return the surface style of a part's family, as the schema assigns it to items."""
     rgb = model.file.create_entity("IfcColourRgb", None, *(round(value, 4) for value in colour(part)))
-    shading = model.file.create_entity("IfcSurfaceStyleShading", rgb, 0.0)
-    return model.file.create_entity("IfcSurfaceStyle", colour_name(part), "BOTH", [shading])
+    see_through = () if model.schema == "IFC2X3" else (0.0,)
+    shading = model.file.create_entity("IfcSurfaceStyleShading", rgb, *see_through)
+    style = model.file.create_entity("IfcSurfaceStyle", colour_name(part), "BOTH", [shading])
+    return style if model.schema != "IFC2X3" else model.file.create_entity("IfcPresentationStyleAssignment", [style])
 
 
 def representation_maps(model: IfcModel, part: Part, style: Entity) -> list[Entity]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from aag_cad.errors import NetworkError
-from aag_cad.export.ifc_base import Entity, IfcModel, guid
+from aag_cad.export.ifc_base import Entity, IfcModel, rooted
 from aag_cad.parts.model import Blade, CouplingBlock, Joint, Part, Plank, Shoe, Strap, Stud
 
 
@@ -35,10 +35,10 @@ def write_joints(
         point = model.file.create_entity("IfcCartesianPoint", [round(value, 3) + 0.0 for value in joint.point])
         place = model.file.create_entity("IfcConnectionPointGeometry", point)
         for other in sides[1:]:
-            ident = guid(model.project_id, "joint", joint.mark, other)
-            common = (ident, None, joint.mark, None, place, elements[sides[0]], elements[other])
+            names = ("joint", joint.mark, other)
+            common = (joint.mark, None, place, elements[sides[0]], elements[other])
             if realising:
                 fixings = [elements[mark] for mark in realising]
-                model.file.create_entity("IfcRelConnectsWithRealizingElements", *common, fixings, joint.kind)
+                rooted(model, "IfcRelConnectsWithRealizingElements", names, *common, fixings, joint.kind)
             else:
-                model.file.create_entity("IfcRelConnectsElements", *common)
+                rooted(model, "IfcRelConnectsElements", names, *common)

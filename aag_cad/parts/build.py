@@ -15,6 +15,7 @@ from aag_cad.geometry.patches import turn
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork
 from aag_cad.parts.blades import BladeJoint, blade_joints, own_sides
 from aag_cad.parts.clearance import Obstacle, near_parts, obstacles
+from aag_cad.parts.facade import covered, placed_facade
 from aag_cad.parts.feet import foot_joints
 from aag_cad.parts.joints import BuiltJoint, block_joint, node_joint
 from aag_cad.parts.marks import Mark
@@ -180,7 +181,7 @@ def _shell(design: Design, network: CurveNetwork) -> tuple[Shell, list[BladeJoin
         joints += [joint for joint, _ in joints_of_blade]
         drillings += [replace(d, joint=joint.mark) for joint, listed in joints_of_blade for d in listed]
     beams, planks = _with_holes(design, beams, planks, joints, drillings)
-    return Shell(
+    shell = Shell(
         mark="S1",
         placement=_placement(0, 1),
         planks=tuple(planks),
@@ -194,7 +195,8 @@ def _shell(design: Design, network: CurveNetwork) -> tuple[Shell, list[BladeJoin
         shoes=_of(Shoe, parts),
         rods=_of(Rod, parts),
         footings=_of(Footing, parts),
-    ), blades
+    )
+    return covered(shell, placed_facade(design, network, shell)), blades
 
 
 def _renamed(value: _T, rename: Callable[[str], str]) -> _T:

@@ -20,13 +20,16 @@ from aag_cad.parts.model import (
     Screw,
     Shoe,
     Strap,
+    Strip,
     Stud,
 )
 from aag_cad.parts.plates import leg_points, plate_depth
+from aag_cad.parts.strips import strip_depth, strip_points
 from aag_cad.units import Floats
 
 _BARS = Plank | Mullion | ClampingBar | Strap
 _FACE_SPACING = 12.0
+_SHEET_SPACING = 30.0
 _EDGE_SPACING = 4.0
 
 
@@ -58,6 +61,8 @@ def surface_points(part: Part) -> Floats:
         return _box_points(part.length, part.width, part.thickness)
     if isinstance(part, Footing):
         return _box_points(part.length, part.width, part.height) - np.array([0.0, 0.0, part.height / 2.0])
+    if isinstance(part, Strip):
+        return strip_points(part, _SHEET_SPACING, _FACE_SPACING)
     if isinstance(part, Shoe | Blade):
         return leg_points(part.plate, _EDGE_SPACING)
     mesh = product_mesh(part)
@@ -101,4 +106,4 @@ def depths_in(part: Part, points: Floats) -> Floats:
     if isinstance(part, Screw):
         inside = part.diameter / 2.0 - np.hypot(points[:, 0], points[:, 1])
         return np.asarray(np.minimum.reduce([inside, points[:, 2], part.length - points[:, 2]]))
-    raise NotImplementedError(f"{part.mark}: parts of this kind are not placed yet")
+    return strip_depth(part, points)

@@ -22,10 +22,12 @@ from aag_cad.parts.model import (
     Screw,
     Shoe,
     Strap,
+    Strip,
     Stud,
 )
 from aag_cad.parts.plates import plate_rings
 from aag_cad.parts.products import part_frame
+from aag_cad.parts.strips import strip_mesh
 from aag_cad.parts.triangles import Mesh, joined, prism, regular_polygon, round_polygon, tube
 from aag_cad.units import Floats
 
@@ -72,8 +74,8 @@ def product_mesh(part: Part) -> Mesh:
             return prism(round_polygon(part.diameter), 0.0, part.length)
         case Shoe() | Blade():
             return tube(plate_rings(part.plate))
-        case _:
-            raise NotImplementedError(f"{part.mark}: parts of this kind are not placed yet")
+        case Strip():
+            return strip_mesh(part)
 
 
 def frame_matrix(frame: Frame) -> Floats:

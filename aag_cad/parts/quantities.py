@@ -25,6 +25,7 @@ from aag_cad.parts.model import (
     Timber,
 )
 from aag_cad.parts.plates import developed_length, plate_volume
+from aag_cad.parts.strips import strip_sizes, strip_volume
 from aag_cad.units import MM3_PER_M3
 
 STEEL_DENSITY = 7850.0
@@ -105,6 +106,8 @@ def sizes(part: Part) -> tuple[float, float, float]:
             return part.length, part.width, part.height
         case Shoe() | Blade():
             return developed_length(part.plate), part.plate.width, part.plate.thickness
+        case Strip():
+            return strip_sizes(part)
 
 
 def hexagon_area(across_flats: float) -> float:
@@ -150,6 +153,8 @@ def gross_volume(part: Part) -> float:
     the section; end cuts turn about the ends of the centre line and so leave the volume alone.
     """
     length = sizes(part)[0]
+    if isinstance(part, Strip):
+        return strip_volume(part)
     if isinstance(part, Rod):
         nut_and_washer = (hexagon_area(part.across_flats) - circle_area(part.diameter)) * part.nut_height
         nut_and_washer += (circle_area(part.washer_diameter) - circle_area(part.diameter)) * part.washer_thickness

@@ -16,6 +16,7 @@ from aag_cad.parts.model import (
     Screw,
     Shoe,
     Strap,
+    Strip,
     Stud,
     all_parts,
 )
@@ -30,6 +31,7 @@ from aag_cad.solids.hardware import (
     stud_solid,
 )
 from aag_cad.solids.planks import formed_plank
+from aag_cad.solids.strips import strip_solid
 
 
 def product_solid(part: Part) -> TopoDS_Solid:
@@ -54,8 +56,8 @@ def product_solid(part: Part) -> TopoDS_Solid:
             return footing_solid(part)
         case Shoe() | Blade():
             return folded_plate_solid(part.plate, part.mark)
-        case _:
-            raise NotImplementedError(f"{part.mark}: parts of this kind are not placed yet")
+        case Strip():
+            return strip_solid(part)
 
 
 def product_solids(gridshell: Gridshell) -> dict[str, TopoDS_Solid]:
