@@ -3,10 +3,12 @@
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import chain
 from typing import Literal, TypeAlias
 
 import numpy as np
 
+from aag_cad.audit_facade import bar_checks, sheet_checks, thermal_checks
 from aag_cad.design import Design
 from aag_cad.mechanics.fastener_spacing import shortfalls
 from aag_cad.mechanics.lamella import LamellaStress, lamella_stress
@@ -15,6 +17,7 @@ from aag_cad.parts.bolting import axis_distance, bolt_holes, bolts_by_joint
 from aag_cad.parts.clash import clashes
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell, Plank, Shell, all_joints, all_parts
+from aag_cad.shop.purchases import Purchases
 from aag_cad.units import Floats, deg_per_m
 
 Severity: TypeAlias = Literal["error", "warning", "note"]
@@ -23,6 +26,7 @@ CONTACT = 1.0
 AXIS_TOLERANCE = 0.1
 ANGLE_SPAN_DEG = 1.0
 BOW = 1.0
+_OLD_PLANK = "AAG902"
 
 
 @dataclass(frozen=True)
@@ -207,6 +211,14 @@ def ridge_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
             yield Finding("AAG504", "warning", family, "blades", 0, 1, "", remedy)
 
 
+def facade_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
+    """Yield AAG851 and on: sheets against their stock and bending, gaps against heat, bars and their screws."""
+    for check in chain(*(checks(design, gridshell) for checks in (sheet_checks, thermal_checks, bar_checks))):
+        yield Finding(
+            check.code, check.severity, check.mark, check.what, check.found, check.allowed, check.unit, check.remedy
+        )
+
+
 CHECKS: tuple[Check, ...] = (
     forming_findings,
     hole_findings,
@@ -218,11 +230,23 @@ CHECKS: tuple[Check, ...] = (
     boundary_findings,
     support_findings,
     ridge_findings,
+    facade_findings,
 )
 _ORDER = {"error": 0, "warning": 1, "note": 2}
 
 
-def audit(design: Design, gridshell: Gridshell) -> list[Finding]:
+def stock_findings(purchases: Purchases) -> Iterator[Finding]:
+    """Yield AAG901 and on: what the stock cannot give; an error where a part cannot be cut at all."""
+    for refused in purchases.refused:
+        severity: Severity = "warning" if refused.code == _OLD_PLANK else "error"
+        yield Finding(
+            refused.code, severity, refused.mark, refused.what, refused.found, refused.allowed, refused.unit,
+            refused.remedy,
+        )  # fmt: skip
+
+
+def audit(design: Design, gridshell: Gridshell, purchases: Purchases) -> list[Finding]:
     """Return the findings of all checks, errors first, then by code and mark."""
     found = [finding for check in CHECKS for finding in check(design, gridshell)]
+    found += stock_findings(purchases)
     return sorted(found, key=lambda f: (_ORDER[f.severity], f.code, f.mark, f.what))

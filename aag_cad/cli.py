@@ -167,12 +167,15 @@ def check(design: DesignName, as_json: AsJson = False) -> None:
     read = load_design(design)
     from aag_cad.audit import audit
     from aag_cad.pipeline import gridshell_of
+    from aag_cad.shop.purchases import purchases_of
 
-    with _progress(2, as_json) as report:
+    with _progress(3, as_json) as report:
         report("parts")
         gridshell = gridshell_of(read)
+        report("stock")
+        purchases = purchases_of(gridshell, read)
         report("audit")
-        findings = [{**asdict(finding), "text": finding.text} for finding in audit(read, gridshell)]
+        findings = [{**asdict(finding), "text": finding.text} for finding in audit(read, gridshell, purchases)]
     if as_json:
         print(json.dumps(findings, indent=1, ensure_ascii=False))
     else:

@@ -332,36 +332,46 @@ class Stock(Section):
     """
 
     lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
-        (4000.0, 5000.0, 6000.0, 7000.0), description="mm, of the boards that planks are cut from"
+        default=(4000.0, 5000.0, 6000.0, 7000.0), description="mm, of the boards that planks are cut from"
     )
     board_thickness: Positive | None = Field(
-        None, description="mm, as bought; without it, that of the planks of a board and the saw cuts between them"
+        default=None,
+        description="mm, as bought; without it, that of the planks of a board and the saw cuts between them",
     )
     planks_per_board: Annotated[Count, Field(ge=1, le=6)] = 2
-    kerf: NotNegative = Field(4.0, description="mm, of the cross-cut saw")
-    split_kerf: NotNegative = Field(1.0, description="mm, of the saw that splits boards into planks")
-    trim: NotNegative = Field(10.0, description="mm, cut off at each end of a board or bar")
+    kerf: NotNegative = Field(default=4.0, description="mm, of the cross-cut saw")
+    split_kerf: NotNegative = Field(default=1.0, description="mm, of the saw that splits boards into planks")
+    trim: NotNegative = Field(default=10.0, description="mm, cut off at each end of a board or bar")
     finger_joint: Annotated[bool, Field(strict=True)] = Field(
-        False, description="whether planks longer than every board are finger-jointed"
+        default=False, description="whether planks longer than every board are finger-jointed"
     )
-    finger_length: NotNegative = Field(15.0, description="mm, that the fingers of both pieces share")
-    finger_clearance: NotNegative = Field(60.0, description="mm, from the fingers to the rim of the nearest hole")
-    finger_spacing: Positive = Field(600.0, description="mm, from a finger joint to the next, a sibling's or an end")
+    finger_length: NotNegative = Field(default=15.0, description="mm, that the fingers of both pieces share")
+    finger_clearance: NotNegative = Field(
+        default=60.0, description="mm, from the fingers to the rim of the nearest hole"
+    )
+    finger_spacing: Positive = Field(
+        default=600.0, description="mm, from a finger joint to the next, a sibling's or an end"
+    )
     offcuts: Annotated[str, StringConstraints(min_length=1)] | None = Field(
-        None, description="CSV file of old planks, used before boards; a relative path starts in the working folder"
+        default=None,
+        description="CSV file of old planks, used before boards; a relative path starts in the working folder",
     )
     accept_old_holes: Annotated[bool, Field(strict=True)] = Field(
-        False, description="whether an old hole may lie in a plank cut from an old one"
+        default=False, description="whether an old hole may lie in a plank cut from an old one"
     )
-    old_hole_clearance: NotNegative = Field(24.0, description="mm, from the rim of an old hole to that of a new one")
-    old_hole_tolerance: NotNegative = Field(0.3, description="mm, within which an old hole is used again as a new one")
+    old_hole_clearance: NotNegative = Field(
+        default=24.0, description="mm, from the rim of an old hole to that of a new one"
+    )
+    old_hole_tolerance: NotNegative = Field(
+        default=0.3, description="mm, within which an old hole is used again as a new one"
+    )
     bar_lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
-        (3000.0, 4000.0), description="mm, of the timber bars that studs and coupling blocks are cut from"
+        default=(3000.0, 4000.0), description="mm, of the timber bars that studs and coupling blocks are cut from"
     )
     metal_lengths: Annotated[tuple[Positive, ...], Field(min_length=1)] = Field(
-        (6000.0,), description="mm, of aluminium and steel bars"
+        default=(6000.0,), description="mm, of aluminium and steel bars"
     )
-    sheet_gap: NotNegative = Field(5.0, description="mm, between two strips cut from one sheet")
+    sheet_gap: NotNegative = Field(default=5.0, description="mm, between two strips cut from one sheet")
 
 
 class Site(Section):

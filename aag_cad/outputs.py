@@ -1,12 +1,14 @@
 """Every output by name: what it writes into the folder of a build."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from aag_cad.errors import DesignError
 from aag_cad.network.polylines import polylines_json
+from aag_cad.shop.purchases import Purchases
 from aag_cad.web.interpolation import interpolated_surface
 from aag_cad.web.npz import web_npz
 from aag_cad.web.obj import web_obj
@@ -16,129 +18,141 @@ if TYPE_CHECKING:
     from assembly.plan import Plan
 
 
-def _write_gridshell(model: Model, _plan: "Plan", folder: Path) -> None:
+@dataclass(frozen=True)
+class Dossier:
+    """What the outputs of a build are written from: the model, the plan of its assembly, what is bought for it."""
+
+    model: Model
+    plan: "Plan"
+    purchases: Purchases
+
+
+Writer: TypeAlias = Callable[[Dossier, Path], None]
+
+
+def _write_gridshell(dossier: Dossier, folder: Path) -> None:
     from aag_cad.files import write_text
     from aag_cad.parts.store import gridshell_json
 
-    write_text(folder / "gridshell.json", gridshell_json(model.gridshell))
+    write_text(folder / "gridshell.json", gridshell_json(dossier.model.gridshell))
 
 
-def _write_step(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_step(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.step import write_step
 
-    write_step(model.gridshell, folder / f"{model.gridshell.name}.step")
+    write_step(dossier.model.gridshell, folder / f"{dossier.model.gridshell.name}.step")
 
 
-def _write_ifc(model: Model, plan: "Plan", folder: Path) -> None:
+def _write_ifc(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.ifc import write_ifc
 
-    write_ifc(model.gridshell, folder / f"{model.gridshell.name}.ifc", plan.steps)
+    write_ifc(dossier.model.gridshell, folder / f"{dossier.model.gridshell.name}.ifc", dossier.plan.steps)
 
 
-def _write_glb(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_glb(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.gltf import write_glb
 
-    write_glb(model.gridshell, folder / f"{model.gridshell.name}.glb")
+    write_glb(dossier.model.gridshell, folder / f"{dossier.model.gridshell.name}.glb")
 
 
-def _write_tables(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_tables(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.tables import write_checks_table, write_holes_table, write_parts_table
 
-    write_parts_table(model.gridshell, folder / "tables" / "parts.csv")
-    write_holes_table(model.gridshell, folder / "tables" / "holes.csv")
-    write_checks_table(model.gridshell, folder / "tables" / "checks.csv")
+    write_parts_table(dossier.model.gridshell, folder / "tables" / "parts.csv")
+    write_holes_table(dossier.model.gridshell, folder / "tables" / "holes.csv")
+    write_checks_table(dossier.model.gridshell, folder / "tables" / "checks.csv")
 
 
-def _write_shop(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_shop(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.prefabrication import write_drilling, write_prefabrication
     from aag_cad.export.purchases import write_cutting, write_purchases
 
-    write_prefabrication(model.gridshell, folder / "tables" / "prefabrication.csv")
-    write_drilling(model.gridshell, folder / "tables" / "drilling.csv")
-    write_purchases(model.gridshell, model.design, folder / "tables" / "purchases.csv")
-    write_cutting(model.gridshell, model.design, folder / "tables" / "cutting.csv")
+    write_prefabrication(dossier.model.gridshell, folder / "tables" / "prefabrication.csv")
+    write_drilling(dossier.model.gridshell, folder / "tables" / "drilling.csv")
+    write_purchases(dossier.purchases, folder / "tables" / "purchases.csv")
+    write_cutting(dossier.purchases, folder / "tables" / "cutting.csv")
 
 
-def _write_blanks(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_blanks(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.dxf import write_blank_dxfs
 
-    write_blank_dxfs(model.gridshell, folder / "blanks")
+    write_blank_dxfs(dossier.model.gridshell, folder / "blanks")
 
 
-def _write_templates(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_templates(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.templates import write_templates
 
-    write_templates(model.gridshell, folder / "templates.pdf")
+    write_templates(dossier.model.gridshell, folder / "templates.pdf")
 
 
-def _write_labels(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_labels(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.labels import write_labels
 
-    write_labels(model.gridshell, folder / "labels.pdf")
+    write_labels(dossier.model.gridshell, folder / "labels.pdf")
 
 
-def _write_btlx(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_btlx(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.btlx import write_btlx
 
-    write_btlx(model.gridshell, folder / f"{model.gridshell.name}.btlx")
+    write_btlx(dossier.model.gridshell, folder / f"{dossier.model.gridshell.name}.btlx")
 
 
-def _write_passports(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_passports(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.passports import write_passports
 
     reuse = folder / "reuse"
-    write_passports(model.gridshell, reuse / "passports.json", reuse / "passports.pdf", reuse / "reuse.csv")
+    write_passports(dossier.model.gridshell, reuse / "passports.json", reuse / "passports.pdf", reuse / "reuse.csv")
 
 
-def _write_facade(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_facade(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.facade import write_facade_table, write_flat_patterns
 
-    write_flat_patterns(model.design, model.gridshell, folder / "facade")
-    write_facade_table(model.design, model.gridshell, folder / "tables" / "facade.csv")
+    write_flat_patterns(dossier.model.design, dossier.model.gridshell, folder / "facade")
+    write_facade_table(dossier.model.design, dossier.model.gridshell, folder / "tables" / "facade.csv")
 
 
-def _write_plan(_model: Model, plan: "Plan", folder: Path) -> None:
+def _write_plan(dossier: Dossier, folder: Path) -> None:
     from aag_cad.files import write_text
     from assembly.plan import plan_json
 
-    write_text(folder / "plan.json", plan_json(plan))
+    write_text(folder / "plan.json", plan_json(dossier.plan))
 
 
-def _write_sequence(model: Model, plan: "Plan", folder: Path) -> None:
+def _write_sequence(dossier: Dossier, folder: Path) -> None:
     from assembly.printout import write_sequence
 
-    write_sequence(plan, model.gridshell, folder / "sequence.pdf")
+    write_sequence(dossier.plan, dossier.model.gridshell, folder / "sequence.pdf")
 
 
-def _write_overview(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_overview(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.overview import write_overview
 
-    write_overview(model.gridshell, folder / "overview.svg", folder / "overview.png")
+    write_overview(dossier.model.gridshell, folder / "overview.svg", folder / "overview.png")
 
 
-def _write_web(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_web(dossier: Dossier, folder: Path) -> None:
     from aag_cad.files import write_bytes, write_text
 
-    write_text(folder / "web.obj", web_obj(model.net))
-    write_bytes(folder / "web.npz", web_npz(model.net))
+    write_text(folder / "web.obj", web_obj(dossier.model.net))
+    write_bytes(folder / "web.npz", web_npz(dossier.model.net))
 
 
-def _write_curves(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_curves(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.step_curves import write_step_curves
     from aag_cad.files import write_text
 
-    surface = interpolated_surface(model.net, model.design.step)
-    write_step_curves(model.network, surface, folder / "curves.step")
-    write_text(folder / "curves.json", polylines_json(model.network))
+    surface = interpolated_surface(dossier.model.net, dossier.model.design.step)
+    write_step_curves(dossier.model.network, surface, folder / "curves.step")
+    write_text(folder / "curves.json", polylines_json(dossier.model.network))
 
 
-def _write_rhino(model: Model, _plan: "Plan", folder: Path) -> None:
+def _write_rhino(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.rhino import write_3dm
 
-    write_3dm(model.gridshell, folder / f"{model.gridshell.name}.3dm")
+    write_3dm(dossier.model.gridshell, folder / f"{dossier.model.gridshell.name}.3dm")
 
 
-OUTPUTS: dict[str, Callable[[Model, "Plan", Path], None]] = {
+OUTPUTS: dict[str, Writer] = {
     "gridshell": _write_gridshell,
     "step": _write_step,
     "ifc": _write_ifc,
@@ -156,7 +170,7 @@ OUTPUTS: dict[str, Callable[[Model, "Plan", Path], None]] = {
     "overview": _write_overview,
 }
 # Written only if named: for designers who go on in other programs.
-EXTRA_OUTPUTS: dict[str, Callable[[Model, "Plan", Path], None]] = {
+EXTRA_OUTPUTS: dict[str, Writer] = {
     "web": _write_web,
     "curves": _write_curves,
     "rhino": _write_rhino,

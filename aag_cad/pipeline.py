@@ -29,9 +29,10 @@ from aag_cad.network.edges import bottom_coordinate, top_coordinate
 from aag_cad.network.extent import shell_extent
 from aag_cad.network.model import CurveNetwork
 from aag_cad.network.polylines import read_polylines
-from aag_cad.outputs import EVERY_OUTPUT, chosen_outputs
+from aag_cad.outputs import EVERY_OUTPUT, Dossier, chosen_outputs
 from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.model import Gridshell
+from aag_cad.shop.purchases import purchases_of
 from aag_cad.web.goals import Goals, Iteration, Optimised
 from aag_cad.web.normal_equations import best_factorisation
 from aag_cad.web.npz import web_npz
@@ -179,7 +180,7 @@ def gridshell_of(design: Design) -> Gridshell:
     return model_of(design).gridshell
 
 
-MODEL_STAGES = ("web", "curves", "parts", "audit", "assembly")
+MODEL_STAGES = ("web", "curves", "parts", "stock", "audit", "assembly")
 
 
 def _staging(folder: Path) -> "tempfile.TemporaryDirectory[str]":
@@ -232,17 +233,20 @@ def build(
     model = model_of(design, begin, given_curves)
     with _staging(folder) as name:
         staging = Path(name)
+        begin("stock")
+        purchases = purchases_of(model.gridshell, design)
         begin("audit")
-        findings = tuple(audit(design, model.gridshell))
+        findings = tuple(audit(design, model.gridshell, purchases))
         begin("assembly")
         plan = plan_of(model.gridshell, design.crew.people, design.crew.lift_limit)
+        dossier = Dossier(model, plan, purchases)
         for output in outputs:
             begin(output)
-            EVERY_OUTPUT[output](model, plan, staging)
+            EVERY_OUTPUT[output](dossier, staging)
         ends = [start for _, start in begun[1:]] + [time.perf_counter()]
         seconds = {stage: end - start for (stage, start), end in zip(begun, ends, strict=True)}
         sizes = {path: (staging / path).stat().st_size for path in _files_below(staging)}
-        summary = summary_of(model.gridshell, model.web, model.extent, findings, plan, sizes, seconds)
+        summary = summary_of(model, findings, plan, purchases, sizes, seconds)
         write_summary(summary, staging / "summary.json")
         _publish(staging, folder)
     return Build(model, findings, plan, summary)

@@ -7,7 +7,7 @@ import numpy as np
 
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Gridshell, Plank, Shell
+from aag_cad.parts.model import FlatBar, Gridshell, Shell
 from aag_cad.units import Floats
 from assembly.view import View, elevation_view, shell_view, vault_view
 
@@ -33,8 +33,8 @@ class Outline:
     points: dict[str, Floats]
 
 
-def plank_rings(plank: Plank, spacing: float = _SPACING) -> Floats:
-    """Return the four corners of a formed plank at even stations, (k, 4, 3), in the coordinates of its shell."""
+def plank_rings(plank: FlatBar, spacing: float = _SPACING) -> Floats:
+    """Return the four corners of a formed plank or bar at even stations, (k, 4, 3), in the coordinates of its shell."""
     section, length = plank.blank.section, plank.blank.length
     count = max(_LEAST_RINGS, int(length / spacing) + 2)
     y, z = section.width / 2.0, section.thickness / 2.0

@@ -47,10 +47,16 @@ def test_the_vault_has_no_error(design: Design, gridshell: Gridshell) -> None:
     assert {f.code for f in found} <= {f"AAG20{i}" for i in range(1, 8)}, "only fasteners miss a clause"
 
 
-def test_steel_too_near_to_the_crown_is_named_with_its_joint(design: Design, gridshell: Gridshell) -> None:
-    """Findings of geodesics and edge planks are about the bolts of steel at their ends: no screw of theirs misses."""
-    found = [f for f in hole_findings(design, gridshell) if f.mark[3:4] in ("G", "E")]
-    assert all(f.severity != "error" for f in found)
+def test_bolts_of_steel_miss_a_clause_in_edge_planks_and_in_no_geodesic(design: Design, gridshell: Gridshell) -> None:
+    """A geodesic has room for 80 mm of end. A plank of 100 mm has not for 32 mm on either side of two M8 abreast."""
+    found = [f for f in hole_findings(design, gridshell) if "shoe" in f.what or "strap" in f.what or "blade" in f.what]
+    assert {f.severity for f in found} == {"warning"}
+    assert {(f.code, f.mark) for f in found} == {
+        ("AAG201", "S1-E-01"),
+        ("AAG202", "S1-E-01"),
+        ("AAG203", "S1-E-01"),
+        ("AAG202", "S1-E-02"),
+    }
 
 
 def test_a_tighter_limit_turns_every_geodesic_into_a_finding(design: Design, gridshell: Gridshell) -> None:
@@ -144,8 +150,8 @@ def test_a_ridge_without_blades_and_a_joint_without_fastener_are_found(design: D
     assert ("AAG503", "R12-01") in {(f.code, f.mark) for f in joint_findings(design, loose)}
 
 
-def test_a_strap_or_blade_off_its_bolts_is_found(design: Design, gridshell: Gridshell) -> None:
-    """A blade shifted by 2 mm along its fold: each of its four bolts misses both the hole of the blade by 2 mm."""
+def test_a_blade_off_its_bolts_is_found(design: Design, gridshell: Gridshell) -> None:
+    """A blade shifted by 2 mm along its fold: its four holes are 2 mm off their bolts."""
     blade, *others = gridshell.blades
     along = tuple(np.array(blade.frame.origin) + 2.0 * np.array(blade.frame.y))
     moved = replace(blade, frame=replace(blade.frame, origin=along))

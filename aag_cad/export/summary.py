@@ -9,13 +9,16 @@ from typing import Any
 
 from aag_cad.audit import Finding, forming_stresses
 from aag_cad.files import write_text
+from aag_cad.mechanics.supports import footing_checks
 from aag_cad.network.extent import ShellExtent
 from aag_cad.parts.blades import ridge_gaps
 from aag_cad.parts.model import Gridshell, all_parts, shell_parts
 from aag_cad.parts.quantities import kind, mass, material
+from aag_cad.shop.purchases import Purchases, stock_summary
 from aag_cad.shop.weights import PAPER_ROOF_KG_PER_M2, PAPER_ROOF_M2, roof_weight, shell_weights
 from aag_cad.units import MM2_PER_M2, deg_per_m
 from aag_cad.web.quality import WebQuality
+from aag_cad.worked import Model
 from assembly.plan import Plan
 
 
@@ -88,23 +91,25 @@ def weights_of(gridshell: Gridshell, roof_m2: float) -> dict[str, Any]:
 
 
 def summary_of(
-    gridshell: Gridshell,
-    web: WebQuality,
-    extent: ShellExtent,
+    model: Model,
     findings: Sequence[Finding],
     plan: Plan,
+    purchases: Purchases,
     sizes: Mapping[str, int],
     seconds: Mapping[str, float],
 ) -> dict[str, Any]:
     """Return the summary as plain data; only ``seconds`` differs from one build of a design to the next."""
+    gridshell, extent = model.gridshell, model.extent
     return {
         "design": gridshell.name,
         "title": gridshell.title,
         "counts": counts(gridshell),
-        "figures": figures(gridshell, web, extent),
-        "web": asdict(web),
+        "figures": figures(gridshell, model.web, extent),
+        "web": asdict(model.web),
         "mass_per_shell_kg": masses_per_shell(gridshell),
         "weights": weights_of(gridshell, extent.roof_area * len(gridshell.shells) / MM2_PER_M2),
+        "supports": [asdict(check) for check in footing_checks(model.design, gridshell)][:1],
+        "stock": stock_summary(purchases),
         "plan_steps": len(plan.steps),
         "findings": [{**asdict(finding), "text": finding.text} for finding in findings],
         "files": dict(sizes),

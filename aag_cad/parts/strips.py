@@ -308,8 +308,9 @@ def strip_depth(strip: Strip, points: Floats) -> Floats:
         first = np.asarray(sheet.edges(u, nu=1))
         speed = (1.0 - v) * dot(first[:, 0], forward) + v * dot(first[:, 1], forward)
         ahead = dot(points - ends[:, 0], forward)
-        u = np.clip(u + ahead / speed, -0.02, 1.02)
-        if np.all(np.abs(ahead) < 1e-7):
+        step = np.clip(u + ahead / speed, -0.02, 1.02) - u
+        u = u + step
+        if np.all(np.abs(step) < 1e-10):
             break
     ends, up = np.asarray(sheet.edges(u)), unit(np.asarray(sheet.normal(u)))
     across = ends[:, 1] - ends[:, 0]

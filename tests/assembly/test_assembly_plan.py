@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import Blade, Bolt, Frame, Gridshell, all_parts
+from aag_cad.parts.model import Bolt, ClampingBar, Gridshell, Part, all_joints, all_parts, ridge_parts
 from assembly.check import check_plan
 from assembly.errors import PlanError
 from assembly.plan import piece_weights, plan_of
@@ -37,7 +37,7 @@ def test_the_plan_has_no_fault(plan: Plan, gridshell: Gridshell) -> None:
 
 def test_a_crew_walking_the_steps_never_misses_a_part(plan: Plan, gridshell: Gridshell) -> None:
     """Do the steps one by one on the bare data: what a step needs must lie there already."""
-    joints = {joint.mark: joint for shell in gridshell.shells for joint in shell.joints}
+    joints = {joint.mark: joint for joint in all_joints(gridshell)}
     blocks = {block.mark for shell in gridshell.shells for block in shell.blocks}
     beam_of = {plank.mark: plank.beam for shell in gridshell.shells for plank in shell.planks if plank.beam}
     made: set[str] = set()
@@ -50,7 +50,7 @@ def test_a_crew_walking_the_steps_never_misses_a_part(plan: Plan, gridshell: Gri
                 laid.add(unit)
         for mark in step.marks:
             part = parse_mark(mark)
-            if part.part[:1] not in ("B", "W"):
+            if part.part[:1] not in ("B", "W", "T"):
                 continue
             joint = joints[mark.rpartition("-")[0]]
             block_bolt = part.part[0] == "B" and any(member in blocks for member in joint.members)
@@ -67,7 +67,51 @@ def test_the_phases_of_a_shell_follow_the_paper(plan: Plan) -> None:
         assert phases == [
             "prefabricate", "lay A1", "lay G", "lay A2", "studs", "hoist", "edge planks", "fix geodesics", "tighten",
         ]  # fmt: skip
-    assert list(dict.fromkeys(step.phase for step in steps_of(plan, ""))) == ["feet", "stand", "ridges"]
+    on_site = list(dict.fromkeys(step.phase for step in steps_of(plan, "")))
+    assert on_site[:3] == ["feet", "stand", "ridges"]
+    assert on_site[3:] in ([], ["cover"])
+
+
+def test_steel_comes_with_the_work_that_needs_it(plan: Plan, gridshell: Gridshell) -> None:
+    """Straps with the upper edge planks; blocks, rods and shoes before any shell stands; bolts of shoes as it stands.
+
+    Blades with their ridge, when both of its shells stand.
+    """
+    added = {mark: step for step in plan.steps for mark in step.marks}
+    for shell in gridshell.shells:
+        assert {added[strap.mark].id for strap in shell.straps} == {f"{shell.mark}.edge.upper"}
+        feet: list[str] = [part.mark for parts in (shell.footings, shell.rods, shell.shoes) for part in parts]
+        assert {added[mark].id for mark in feet} == {"site.feet"}
+        bolts = {mark for joint in shell.joints if joint.kind == "foot" for mark in joint.fasteners}
+        assert {added[mark].id for mark in bolts} == {f"site.stand.{shell.mark}"}
+    for part in ridge_parts(gridshell):
+        pair = sorted(part.mark[1:3])
+        assert added[part.mark].id == f"site.ridge.S{pair[0]}.S{pair[1]}"
+
+
+def test_the_cover_comes_last(plan: Plan, gridshell: Gridshell) -> None:
+    phases = [step.phase for step in plan.steps]
+    covering = [step for step in plan.steps if step.phase == "cover"]
+    assert all(phase == "cover" for phase in phases[len(phases) - len(covering) :])
+    added = {mark for step in covering for mark in step.marks}
+    for shell in gridshell.shells:
+        cover: tuple[Part, ...] = (*shell.mullions, *shell.strips, *shell.clamps)
+        assert {part.mark for part in cover} <= added
+
+
+def test_tools_fit_the_nuts_of_each_step(plan: Plan) -> None:
+    """M8 takes a 13 mm spanner, the M16 rods of the feet one of 24 mm, which nobody carries up to the nodes."""
+    spanners = {step.phase: [tool for tool in step.tools if "spanner" in tool] for step in plan.steps}
+    for phase in ("prefabricate", "studs", "tighten", "ridges"):
+        assert spanners[phase] == ["two 13 mm spanners"]
+    assert spanners["stand"] == ["two 13 mm spanners and two 24 mm spanners"]
+
+
+def test_the_bolts_named_at_the_studs_are_those_of_the_studs(plan: Plan) -> None:
+    for step in (step for step in plan.steps if step.phase == "studs"):
+        words = " ".join(step.instructions)
+        assert "(Bolt M8 x 65, a washer" in words
+        assert "M8 x 40" not in words
 
 
 def test_a_shell_makes_a_readable_booklet(plan: Plan) -> None:
@@ -115,7 +159,7 @@ def test_the_same_gridshell_gives_the_same_plan(plan: Plan, gridshell: Gridshell
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_fewer_shells_have_a_sound_plan(gridshell: Gridshell, count: int) -> None:
-    fewer = replace(gridshell, shells=gridshell.shells[:count])
+    fewer = replace(gridshell, shells=gridshell.shells[:count], blades=(), bolts=(), joints=())
     found = plan_of(fewer, PEOPLE, LIFT)
     assert check_plan(found, fewer) == []
     assert len(steps_of(found, "", "ridges")) == count - 1
@@ -159,6 +203,12 @@ def _changed(plan: Plan, step_id: str, **changes: object) -> Plan:
     return replace(plan, steps=tuple(steps))
 
 
+def _moved(plan: Plan, mark: str, step_id: str) -> Plan:
+    steps = (replace(step, marks=tuple(other for other in step.marks if other != mark)) for step in plan.steps)
+    steps = (replace(step, marks=(*step.marks, mark)) if step.id == step_id else step for step in steps)
+    return replace(plan, steps=tuple(steps))
+
+
 def _swapped(plan: Plan, a: str, b: str) -> Plan:
     at = {step.id: i for i, step in enumerate(plan.steps)}
     steps = list(plan.steps)
@@ -178,6 +228,17 @@ FAULTS: list[tuple[Callable[[Plan], Plan], str]] = [
     (lambda plan: _swapped(plan, "S1.lay.3", "S1.lay.5"), "does not come before it"),
     (lambda plan: _changed(plan, "S1.lay.1", assemblies=("S1-A1-01",)), "S1-A1-02: laid 0 times"),
     (lambda plan: _changed(plan, "S1.lay.2", number=3), "step S1.lay.2: number 3, expected 8"),
+    (lambda plan: _without(plan, "S1.edge.upper"), "S1-R-01: no step adds it"),
+    (lambda plan: _changed(plan, "S1.tighten", predecessors=("S1.edge.lower",)), "S1-R-01 is part of the stiff shell"),
+    (lambda plan: _changed(plan, "site.stand.S2", predecessors=("S2.tighten",)), "S2-C-05 carries the shell"),
+    (lambda plan: _moved(plan, "S2-F-05-B1", "S2.tighten"), "S2-F-05-B1 bolts a shoe to the shell"),
+    (lambda plan: _moved(plan, "S3-C-14-T1", "S3.make.1"), "S3-C-14-T1 joins S3-F-14, but nothing forces"),
+    (lambda plan: _moved(plan, "R12-03", "S1.tighten"), "R12-03: nothing forces the standing of S1 before"),
+    (lambda plan: _moved(plan, "R23-03-B2", "site.feet"), "R23-03-B2 joins R23-03, but nothing forces"),
+    (
+        lambda plan: _changed(plan, "site.ridge.S1.S2", predecessors=("site.stand.S1",)),
+        "R12-01-B1: nothing forces the standing of S2 before",
+    ),
 ]
 
 
@@ -189,9 +250,22 @@ def test_the_check_finds_a_damaged_plan(
 
 
 def test_blades_join_the_shells_that_they_name_once_both_stand(gridshell: Gridshell) -> None:
-    frame = Frame((0.0, 0.0, 2600.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    blades = tuple(Blade(f"R23-{i:02d}", frame, 300.0, 80.0, 6.0, ()) for i in (1, 2))
-    works = {work.id: work for work in site_works(replace(gridshell, blades=blades))}
-    assert works["site.ridge.S2.S3"].marks == ("R23-01", "R23-02")
+    blades = tuple(blade for blade in gridshell.blades if blade.mark in ("R23-01", "R23-02"))
+    joints = tuple(joint for joint in gridshell.joints if joint.mark in ("R23-01", "R23-02"))
+    works = {work.id: work for work in site_works(replace(gridshell, blades=blades, joints=joints))}
+    bolts = tuple(f"{blade}-B{i}" for blade in ("R23-01", "R23-02") for i in (1, 2, 3, 4))
+    assert works["site.ridge.S2.S3"].marks == ("R23-01", "R23-02", *bolts)
     assert {"site.stand.S2", "site.stand.S3"} <= set(works["site.ridge.S2.S3"].after)
     assert "site.ridge.S1.S2" not in works
+
+
+def test_a_cover_before_the_ridges_is_found(plan: Plan, gridshell: Gridshell) -> None:
+    """A clamping bar on its own, put on as soon as its shell stands."""
+    shell = gridshell.shells[0]
+    strap = shell.straps[0]
+    bar = ClampingBar("S1-D-99", strap.curve, strap.blank)
+    covered = replace(gridshell, shells=(replace(shell, clamps=(*shell.clamps, bar)), *gridshell.shells[1:]))
+    early = replace(
+        plan, steps=tuple(replace(s, marks=(*s.marks, bar.mark)) if s.id == "site.stand.S1" else s for s in plan.steps)
+    )
+    assert any("S1-D-99 covers S1, but nothing forces" in problem for problem in check_plan(early, covered))

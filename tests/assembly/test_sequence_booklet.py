@@ -5,12 +5,14 @@ from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 
+import numpy as np
 import pytest
 from pypdf import PdfReader
 
 from aag_cad.errors import FileError
+from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Part, all_parts
-from assembly.cards import part_rows, step_card, totals
+from assembly.cards import part_rows, step_card, step_table, totals
 from assembly.plan import piece_weights, plan_of
 from assembly.printout import sequence_pdf, write_sequence
 from assembly.steps import Plan, Step
@@ -29,17 +31,18 @@ def pages(plan: Plan, gridshell: Gridshell, tmp_path_factory: pytest.TempPathFac
     write_sequence(plan, gridshell, path)
     found = list(PdfReader(path).pages)
     assert len(found) == FIRST_PAGES + len(plan.steps)
-    return [" ".join(page.extract_text().split()) for page in found[: FIRST_PAGES + len(shown(plan))]]
+    read = [*range(FIRST_PAGES), *(FIRST_PAGES + step.number - 1 for step in shown(plan))]
+    return [" ".join(found[i].extract_text().split()) for i in read]
 
 
 def shown(plan: Plan) -> list[Step]:
-    """The steps whose cards are read: those of the first shell, which the other shells repeat."""
-    return [step for step in plan.steps if step.shell == "S1"]
+    """The steps whose cards are read: those of the first shell, which the others repeat, and those on site."""
+    return [step for step in plan.steps if step.shell in ("S1", "")]
 
 
 @pytest.fixture(scope="module")
 def one_shell(gridshell: Gridshell) -> Gridshell:
-    return replace(gridshell, shells=gridshell.shells[:1])
+    return replace(gridshell, shells=gridshell.shells[:1], blades=(), bolts=(), joints=())
 
 
 def test_each_card_says_what_to_do_with_what_and_after_what(plan: Plan, pages: list[str]) -> None:
@@ -69,7 +72,9 @@ def test_pages_are_a4_one_a_step_for_a_single_shell_too(one_shell: Gridshell) ->
     plan = plan_of(one_shell, 4, 25.0)
     reader = PdfReader(BytesIO(sequence_pdf(plan, one_shell)))
     assert len(reader.pages) == FIRST_PAGES + len(plan.steps)
-    assert "Set out the feet of the vault" in " ".join(reader.pages[-2].extract_text().split())
+    feet = next(step for step in plan.steps if step.phase == "feet")
+    page = " ".join(reader.pages[FIRST_PAGES + feet.number - 1].extract_text().split())
+    assert "Set out the feet of the vault" in page
     for page in reader.pages:
         # 210 x 297 mm in points, to the rounding of the writer.
         assert float(page.mediabox.width) == pytest.approx(595.28, abs=0.01)
@@ -95,6 +100,43 @@ def test_fasteners_are_counted_by_size_with_their_joints(plan: Plan, gridshell: 
     ]
 
 
+def test_steel_and_concrete_are_listed_by_make_with_their_marks(plan: Plan, gridshell: Gridshell) -> None:
+    """One line a make: straps of all lengths in one; rods at their blocks, shoes and blocks by their own marks."""
+    parts = {part.mark: part for part in all_parts(gridshell)}
+    steps = {step.id: step for step in plan.steps}
+
+    def rows(step: str, shell: str) -> dict[str, tuple[str, str]]:
+        marks = tuple(mark for mark in steps[step].marks if mark.startswith(shell))
+        return {name: (count, where) for count, name, where in part_rows(parts, marks)}
+
+    feet = rows("site.feet", "S1")
+    assert feet["Concrete block 400 x 380 x 300"] == ("14", "C-01 to C-14")
+    assert feet["Shoe 90 x 6"] == ("14", "F-01 to F-14")
+    (rod,) = (row for name, row in feet.items() if name.startswith("Threaded rod M16"))
+    assert rod == ("14", "at C-01 to C-14")
+    assert rows("site.stand.S1", "S1")["Bolt M8 x 40"] == ("56", "at F-01 to F-14, 4 each")
+    assert rows("S1.edge.upper", "S1")["Strap 50 x 3"] == ("15", "R-01 to R-15")
+    ridge = rows("site.ridge.S1.S2", "R12")
+    assert ridge == {
+        "Ridge blade 100 x 5": ("7", "R12-01 to R12-07"),
+        "Bolt M8 x 40": ("28", "at R12-01 to R12-07, 4 each"),
+    }
+
+
+def test_the_table_of_the_feet_sets_out_the_concrete_blocks(plan: Plan, gridshell: Gridshell) -> None:
+    """x and y of the middle of each block, where its rod stands, and not of the timber beside it."""
+    step = next(step for step in plan.steps if step.phase == "feet")
+    table = step_table(gridshell, plan, step, piece_weights(gridshell))
+    assert table is not None
+    rows = {mark: (float(x), float(y)) for mark, x, y in table["rows"]}
+    assert len(rows) == 42
+    for shell in gridshell.shells:
+        turn = frame_matrix(shell.placement)[:3, :3]
+        for rod in shell.rods:
+            place = turn @ np.array(rod.frame.origin)
+            assert rows[rod.mark.rpartition("-")[0]] == pytest.approx(place[:2], abs=0.51)
+
+
 def test_the_parts_of_a_card_add_up_to_its_step(plan: Plan, gridshell: Gridshell) -> None:
     weights = piece_weights(gridshell)
     parts = {part.mark: part for part in all_parts(gridshell)}
@@ -107,6 +149,7 @@ def test_the_parts_of_a_card_add_up_to_its_step(plan: Plan, gridshell: Gridshell
 def test_the_totals_count_each_part_once(gridshell: Gridshell) -> None:
     table = totals(gridshell, piece_weights(gridshell))
     *kinds, whole = table["rows"]
+    assert sum(int(row[1]) for row in kinds) == int(whole[1])
     assert sum(int(row[2]) for row in kinds) == int(whole[2])
     assert int(whole[2]) == len(all_parts(gridshell))
 
