@@ -28,6 +28,7 @@ app = typer.Typer(
 _P = ParamSpec("_P")
 _USER_ERROR = 2
 _MOST_ROWS = 12
+_MOST_FILES = 12
 
 DesignName = Annotated[str, typer.Argument(metavar="DESIGN", help="a design file (TOML) or a shipped name: vault")]
 Folder = Annotated[Path | None, typer.Option("-o", "--output", help="folder for the files; default: the design's name")]
@@ -96,8 +97,14 @@ def _files_table(files: dict[str, int], folder: Path, summary: bool = True) -> T
     table = Table(title=f"Files in {folder}", title_justify="left")
     table.add_column("file")
     table.add_column("kB", justify="right")
-    for name, size in files.items():
-        table.add_row(name, f"{size / 1000:.0f}")
+    series: dict[tuple[str, str], list[str]] = {}
+    for name in files:
+        series.setdefault((str(Path(name).parent), Path(name).suffix), []).append(name)
+    for names in series.values():
+        alike = len(names) > _MOST_FILES
+        for group in [names] if alike else [[name] for name in names]:
+            title = f"{group[0]} to {Path(group[-1]).name}, {len(group)} files" if alike else group[0]
+            table.add_row(title, f"{sum(files[name] for name in group) / 1000:.0f}")
     if summary:
         table.add_row("summary.json", "")
     return table

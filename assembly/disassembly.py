@@ -31,6 +31,8 @@ DOWN_PHASES: tuple[DownPhase, ...] = get_args(DownPhase)
 
 _PAIRS_A_STEP = 4
 _GRAVITY = 9.81
+# Shells that these steps work on stay where they are.
+_STAYING: tuple[DownPhase, ...] = ("prop", "open ridges")
 _EACH_HELD: tuple[DownPhase, ...] = ("prop", "lift off", "hang", "lower")
 
 # Tools, instructions and what to check after each phase.
@@ -86,7 +88,7 @@ _WORDS: dict[DownPhase, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     "release geodesics": (
         ("cordless driver", "clamps"),
         (
-            "Drive out the screws at the K marks of these geodesics, in pairs from the middle of the shell to its sides.",
+            "Drive out the screws at the K marks of these geodesics, in pairs from the middle to the sides.",
             "Leave the stud bolts tight: they keep the beams from turning while the screws come out.",
             "A screw that binds bears load: take up the nearest sling first.",
         ),
@@ -104,7 +106,7 @@ _WORDS: dict[DownPhase, tuple[tuple[str, ...], tuple[str, ...], str]] = {
         ("{spanners}", "marker"),
         (
             "Loosen the nuts of all studs by two turns, row by row from the top down, both sides at a time.",
-            "The beams start to turn about the studs and the sides to move out: wait until they rest before the next row.",
+            "The beams turn about the studs and the sides move out: wait until they rest before the next row.",
             "Nobody stands under or beside the shell; from outside only, within reach of the tag lines.",
         ),
         "Every nut is loose by two turns and none is off.",
@@ -195,7 +197,7 @@ def _site_tasks(gridshell: Gridshell, kits: Mapping[str, Kit]) -> Iterator[_Task
             bare.append(f"site.down.cover.{mark}")
             yield _Task(bare[-1], "uncover", f"Take the cover off shell {mark}", "", (), kit.cover[::-1])
     for mark in kits:
-        yield _Task(f"site.down.prop.{mark}", "prop", f"Prop shell {mark}", "", tuple(bare))
+        yield _Task(f"site.down.prop.{mark}", "prop", f"Prop shell {mark}", "", tuple(bare), (), (mark,))
     before = propped = tuple(f"site.down.prop.{mark}" for mark in kits)
     for a, b in reversed(ridge_pairs(gridshell)):
         blades = [joint for joint in gridshell.joints if {f"S{digit}" for digit in joint.mark[1:3]} == {a, b}]
@@ -284,9 +286,9 @@ def _dismantling(shell: Shell, runs: Sequence[Sequence[str]], kit: Kit) -> Itera
         yield _Task(task_id, what, title, name, (before,), (*bolts, *loose), beams)
         off |= dict.fromkeys(group, task_id)
         before = task_id
-    ends, k = [before], 0
-    for group in (g for run in split for g in groups_of([u for u in run if u in kit.beams], BEAMS_A_STEP)):
-        k += 1
+    ends = [before]
+    groups = chain.from_iterable(groups_of([unit for unit in run if unit in kit.beams], BEAMS_A_STEP) for run in split)
+    for k, group in enumerate(groups, start=1):
         taken = tuple(dict.fromkeys(off[beam] for beam in group))
         pulled = [stud for beam in group for stud in studs.lowest.get(beam, ())]
         if pulled:
@@ -305,7 +307,8 @@ def _words(
     gridshell: Gridshell, task: _Task, weights: Mapping[str, tuple[float, float]]
 ) -> tuple[tuple[str, ...], ...]:
     """Return tools, instructions and (hold,) of a task, with sizes of spanners and the energy of a hanging shell."""
-    listed = [*gridshell.bolts, *(part for shell in gridshell.shells for part in (*shell.bolts, *shell.rods))]
+    listed: list[Bolt | Rod] = [*gridshell.bolts]
+    listed += (part for shell in gridshell.shells for part in (*shell.bolts, *shell.rods))
     leaving = set(task.marks)
     out = [part for part in listed if part.mark in leaving]
     held = [bolt for shell in gridshell.shells if shell.mark == task.shell for bolt in shell.bolts]
@@ -351,9 +354,7 @@ def disassembly_of(gridshell: Gridshell, people: int, lift_limit: float) -> Plan
     steps: list[Step] = []
     for tasks in chapters:
         for i, task in enumerate(tasks):
-            pieces = [
-                weights[mark] for mark in (*task.marks, *(() if task.phase == "open ridges" else task.assemblies))
-            ]
+            pieces = [weights[mark] for mark in (*task.marks, *(() if task.phase in _STAYING else task.assemblies))]
             hands = hands_for(crew, max((m for m, _ in pieces), default=0.0), max((n for _, n in pieces), default=0.0))
             tools, instructions, (hold,) = _words(gridshell, task, weights)
             last = task.phase in _EACH_HELD or all(later.phase != task.phase for later in tasks[i + 1 :])

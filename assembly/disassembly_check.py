@@ -8,7 +8,7 @@ from typing import TypeAlias
 import networkx as nx
 import numpy as np
 
-from aag_cad.parts.model import Bolt, Gridshell, Joint, Shell, all_joints, all_parts
+from aag_cad.parts.model import Bolt, Gridshell, Joint, Part, Shell, all_joints, all_parts
 from assembly.steps import Plan, Step
 
 # A place in the plan: the step, and the turn in it. A rule: why, what comes first, what then.
@@ -144,17 +144,19 @@ def _standing(plan: Plan, shell: Shell, leaves: dict[str, _Place]) -> Iterator[_
     lifts = [(step.id, -1) for step in _steps(plan, "lift off", shell.mark)]
     opened = [(step.id, 0) for step in _steps(plan, "open ridges")]
     covering = {mark for joint in shell.joints if joint.kind == "cover" for mark in joint.fasteners}
-    covering |= {part.mark for part in (*shell.mullions, *shell.strips, *shell.clamps)}
+    bars: tuple[Part, ...] = (*shell.mullions, *shell.strips, *shell.clamps)
+    covering |= {part.mark for part in bars}
     for mark, prop in product(sorted(covering & set(leaves)), props):
         yield f"{mark} loads {shell.mark}", leaves[mark], prop
     yield from ((f"{shell.mark} leans on its neighbours", prop, then) for prop in props for then in (*opened, *lifts))
     for ridge, lift in product(_steps(plan, "open ridges", shell.mark), lifts):
         yield f"{shell.mark} is joined along a ridge", (ridge.id, 0), lift
     bolted = {mark for joint in shell.joints if joint.kind == "foot" for mark in joint.fasteners}
-    feet = bolted | {part.mark for part in (*shell.shoes, *shell.rods, *shell.footings)}
+    carrying: tuple[Part, ...] = (*shell.shoes, *shell.rods, *shell.footings)
+    feet = bolted | {part.mark for part in carrying}
     for mark, lift in product(sorted(feet & set(leaves)), lifts):
         yield f"{mark} carries {shell.mark}", lift, leaves[mark]
-    if shell.mark not in {step.title.rpartition(" ")[2] for step in _steps(plan, "prop")}:
+    if not _steps(plan, "prop", shell.mark):
         yield f"{shell.mark} is propped", ("", 0), ("", 1)
 
 

@@ -9,7 +9,7 @@ from aag_cad.parts.mesh import frame_matrix, shell_mesh
 from aag_cad.parts.model import Gridshell, Part, Shell, Stud
 from aag_cad.parts.triangles import regular_polygon
 from aag_cad.units import Floats
-from assembly.outline import plank_rings
+from assembly.pieces import plank_rings
 
 COLOURS = {
     "A1": (58, 112, 152),

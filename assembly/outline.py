@@ -1,27 +1,26 @@
 """Shells as they lie on a sheet: outlines of their planks and places of their joints, y down."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from aag_cad.parts.forming import formed_points
+from aag_cad.geometry.surface import unit
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import FlatBar, Gridshell, Shell
-from aag_cad.units import Floats
+from aag_cad.parts.model import Blade, Gridshell, Joint, Part, Shell, shell_parts
+from aag_cad.units import Floats, Vector
+from assembly.pieces import Flat, piece_outline
 from assembly.view import View, elevation_view, shell_view, vault_view
-
-_SPACING = 300.0
-_LEAST_RINGS = 7
 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
     """What is drawn of some shells, in units of the sheet: outlines and lines (n, 2), points (2,).
 
-    ``planks`` run from the lowest layer to the highest; ``lines`` are centre lines of planks and beams from their
-    start, ``points`` those of the joints. ``scale`` is sheet units a mm, ``origin`` the place of the
-    coordinates' origin.
+    ``planks`` run from the lowest layer to the highest, ``pieces`` are the other parts that are drawn; ``lines`` are
+    centre lines of planks, beams and pieces from their start, ``points`` those of the joints. ``scale`` is sheet units
+    a mm, ``origin`` the place of the coordinates' origin.
     """
 
     width: float
@@ -31,73 +30,99 @@ class Outline:
     planks: dict[str, Floats]
     lines: dict[str, Floats]
     points: dict[str, Floats]
+    pieces: dict[str, Floats]
 
 
-def plank_rings(plank: FlatBar, spacing: float = _SPACING) -> Floats:
-    """Return the four corners of a formed plank or bar at even stations, (k, 4, 3), in the coordinates of its shell."""
-    section, length = plank.blank.section, plank.blank.length
-    count = max(_LEAST_RINGS, int(length / spacing) + 2)
-    y, z = section.width / 2.0, section.thickness / 2.0
-    corners = np.array([(-y, -z), (y, -z), (y, z), (-y, z)])
-    stations = np.repeat(np.linspace(0.0, length, count), 4)
-    return formed_points(plank, np.column_stack([stations, np.tile(corners, (count, 1))])).reshape(count, 4, 3)
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Parts and joints that are moved together by a (4, 4) matrix; ``shell`` is None for those of the ridges."""
+
+    shell: Shell | None
+    matrix: Floats
+    parts: tuple[Part, ...]
+    joints: tuple[Joint, ...]
 
 
-def silhouette(rings: Floats) -> tuple[Floats, Floats]:
-    """Return outline (2k, 2) and centre line (k, 2) of rings (k, 4, 2) seen flat: the outermost corners of each."""
-    centre = rings.mean(axis=1)
-    along = np.gradient(centre, axis=0)
-    across = np.column_stack([-along[:, 1], along[:, 0]])
-    reach = np.einsum("kcj,kj->kc", rings - centre[:, None], across)
-    rows = np.arange(len(rings))
-    left, right = rings[rows, reach.argmax(axis=1)], rings[rows, reach.argmin(axis=1)]
-    return np.concatenate([left, right[::-1]]), centre
+def _group(shell: Shell, matrix: Floats, drawn: tuple[type[Part], ...]) -> _Group:
+    planks = sorted(shell.planks, key=lambda plank: (plank.layer, plank.mark))
+    pieces = sorted((p for p in shell_parts(shell) if isinstance(p, drawn)), key=lambda p: drawn.index(type(p)))
+    return _Group(shell, matrix, (*planks, *pieces), shell.joints)
 
 
 def _outline(
-    shells: Sequence[tuple[Shell, Floats]], view: View, width: float, margin: float, with_origin: bool = False
+    groups: Sequence[_Group], view: View, width: float, margin: float, around: Sequence[Vector] = (), only: str = ""
 ) -> Outline:
-    """Return shells, each moved by a (4, 4) matrix, in a view on a sheet of a given width, with a margin all round."""
+    """Return groups in a view on a sheet of a given width, with a margin all round.
 
-    def flat(points: Floats, matrix: Floats) -> Floats:
-        seen = view(points @ matrix[:3, :3].T + matrix[:3, 3])
-        return np.column_stack([seen[:, 0], -seen[:, 1]])
+    The sheet holds all parts and the points ``around``; or only the parts whose marks match the pattern ``only``.
+    """
 
-    planks = sorted(
-        ((plank, m) for shell, m in shells for plank in shell.planks), key=lambda p: (p[0].layer, p[0].mark)
-    )
-    rings = {plank.mark: (plank_rings(plank), matrix) for plank, matrix in planks}
-    seen = {mark: flat(r.reshape(-1, 3), m).reshape(len(r), 4, 2) for mark, (r, m) in rings.items()}
-    joints = {joint.mark: flat(np.array([joint.point]), m)[0] for shell, m in shells for joint in shell.joints}
-    corners = np.concatenate([*(points.reshape(-1, 2) for points in seen.values()), np.zeros((int(with_origin), 2))])
+    def on_sheet(matrix: Floats) -> Flat:
+        def flat(points: Floats) -> Floats:
+            seen = view(points @ matrix[:3, :3].T + matrix[:3, 3])
+            return np.column_stack([seen[:, 0], -seen[:, 1]])
+
+        return flat
+
+    seen = {part.mark: piece_outline(part, on_sheet(group.matrix)) for group in groups for part in group.parts}
+    joints = {j.mark: on_sheet(group.matrix)(np.array([j.point]))[0] for group in groups for j in group.joints}
+    held = [outline for mark, (outline, _) in seen.items() if re.match(only, mark)]
+    corners = np.concatenate([*held, *(on_sheet(np.eye(4))(np.array([point])) for point in around)])
     low, high = corners.min(axis=0), corners.max(axis=0)
     scale = (width - 2.0 * margin) / float(high[0] - low[0])
-    drawn = {mark: silhouette((points - low) * scale + margin) for mark, points in seen.items()}
+    drawn = {mark: [(points - low) * scale + margin for points in pair] for mark, pair in seen.items()}
     lines = {mark: line for mark, (_, line) in drawn.items()}
-    for beam in (beam for shell, _ in shells for beam in shell.beams):
+    shells = [group.shell for group in groups if group.shell is not None]
+    for beam in (beam for shell in shells for beam in shell.beams):
         lines[beam.mark] = (lines[beam.planks[0]] + lines[beam.planks[1]]) / 2.0
+    layers = {plank.mark: plank.layer for shell in shells for plank in shell.planks}
     return Outline(
         width=width,
         height=float(high[1] - low[1]) * scale + 2.0 * margin,
         scale=scale,
         origin=margin - low * scale,
-        planks={mark: outline for mark, (outline, _) in drawn.items()},
+        planks={mark: drawn[mark][0] for mark in sorted(layers, key=lambda mark: (layers[mark], mark))},
         lines=lines,
         points={mark: (point - low) * scale + margin for mark, point in joints.items()},
+        pieces={mark: outline for mark, (outline, _) in drawn.items() if mark not in layers},
     )
 
 
-def shell_outline(shell: Shell, width: float, margin: float) -> Outline:
-    """Return a shell square on from outside, its foot at the bottom."""
-    return _outline([(shell, np.eye(4))], shell_view(shell), width, margin)
+def shell_outline(shell: Shell, width: float, margin: float, drawn: tuple[type[Part], ...] = ()) -> Outline:
+    """Return a shell square on from outside, its foot at the bottom; ``drawn`` are kinds of pieces besides planks."""
+    return _outline([_group(shell, np.eye(4), drawn)], shell_view(shell), width, margin)
 
 
 def elevation_outline(shell: Shell, width: float, margin: float) -> Outline:
     """Return a shell from its side, standing as it will stand."""
-    return _outline([(shell, np.eye(4))], elevation_view(shell), width, margin)
+    return _outline([_group(shell, np.eye(4), ())], elevation_view(shell), width, margin)
 
 
-def vault_outline(gridshell: Gridshell, width: float, margin: float) -> Outline:
-    """Return all shells in plan, the centre on the sheet."""
-    placed = [(shell, frame_matrix(shell.placement)) for shell in gridshell.shells]
-    return _outline(placed, vault_view(), width, margin, with_origin=True)
+def _placed(gridshell: Gridshell, drawn: tuple[type[Part], ...]) -> list[_Group]:
+    placed = [_group(shell, frame_matrix(shell.placement), drawn) for shell in gridshell.shells]
+    blades = gridshell.blades if Blade in drawn else ()
+    return [*placed, _Group(None, np.eye(4), blades, gridshell.joints)]
+
+
+def vault_outline(gridshell: Gridshell, width: float, margin: float, drawn: tuple[type[Part], ...] = ()) -> Outline:
+    """Return all shells in plan, the centre on the sheet; ``drawn`` are kinds of pieces besides planks."""
+    return _outline(_placed(gridshell, drawn), vault_view(), width, margin, around=((0.0, 0.0, 0.0),))
+
+
+def ridge_outline(gridshell: Gridshell, pair: Sequence[str], width: float, margin: float) -> Outline:
+    """Return the ridge between two shells from above with its blades, the crown to the left, cut off beside it.
+
+    ``pair`` are the marks of the two ridge planks.
+    """
+    matrices = {shell.mark: frame_matrix(shell.placement) for shell in gridshell.shells}
+    planks = {plank.mark: (plank, matrices[shell.mark]) for shell in gridshell.shells for plank in shell.planks}
+    ends = []
+    for plank, matrix in (planks[mark] for mark in pair):
+        points = plank.curve.points[[0, -1]] @ matrix[:3, :3].T + matrix[:3, 3]
+        ends.append(points[np.argsort(-points[:, 2])])
+    crown, side = np.mean(ends, axis=0)
+    along = unit((side - crown) * [1.0, 1.0, 0.0])
+    up = np.array([0.0, 0.0, 1.0])
+    view = View(np.array([along, np.cross(up, along), up]))
+    only = "|".join(re.escape(mark) for mark in pair)
+    return _outline(_placed(gridshell, (Blade,)), view, width, margin, only=rf"({only})$")

@@ -11,8 +11,8 @@ from aag_cad.parts.model import Gridshell
 from aag_cad.units import Floats
 from assembly.drawing import Style, group, path, polygon, svg
 from assembly.faces import Faces, gridshell_faces, picture_spacing, placed_points
-from assembly.outline import plank_rings
 from assembly.painting import covers_of, painting_order, samples_of, unhidden
+from assembly.pieces import plank_rings
 
 WIDTH = 1800.0
 SHADOW = Style("#dedad1")

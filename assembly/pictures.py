@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from aag_cad.parts.marks import parse_mark
 from aag_cad.units import Floats
 from assembly.drawing import (
     Box,
@@ -29,6 +30,14 @@ NEW = {
     "G": Style("#3f7d4e", "#000", 2.5),
     "E": Style("#2b2b2b", "#000", 2.5),
 }
+# Pieces by the family of their mark; blades are R and a pair of shells.
+STEEL = Style("#7a2a8c", "#000", 1.5)
+PIECES = {
+    "C": Style("#bdbdbd", "#000", 2.0),
+    "P": Style("#cfe2ea", "#4b7389", 1.5),
+    "M": Style("#3d5a6c", "#000", 0.8),
+    "D": Style("#14242e", "#000", 0.8),
+}
 FAINT_NEW = Style("#b9b9b9", "#000", 2.5)
 DOT = Style("#000", "#fff", 2.0)
 RING = Style("#fff", "#000", 3.0)
@@ -36,6 +45,7 @@ DONE = Style("#777")
 LABEL_SIZE = 27.0
 DOT_LABEL_SIZE = 23.0
 _DOT = 10.0
+_ON_THE_GROUND = ("C", "F")
 
 _SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88)
 
@@ -44,9 +54,10 @@ _SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88)
 class Scene:
     """What a picture shows of a shell, by mark.
 
-    ``there``, ``new`` and ``worked_on`` are planks; ``dots`` joints with a solid dot, ``rings`` joints with a ring,
-    ``done`` joints with a small grey dot. ``names`` are framed labels of planks or beams along their lines, ``tags``
-    framed and ``numbers`` plain labels at joints; ``starts`` are planks or beams whose start ends get a triangle.
+    ``there`` and ``new`` are planks and other pieces, ``worked_on`` planks; ``dots`` joints with a solid dot, ``rings``
+    joints with a ring, ``done`` joints with a small grey dot. ``names`` are framed labels of planks, beams or pieces
+    along their lines, ``tags`` framed and ``numbers`` plain labels at joints; ``starts`` are planks or beams whose
+    start ends get a triangle.
     """
 
     there: Collection[str] = ()
@@ -72,8 +83,10 @@ def _triangle(start: Floats, towards: Floats, size: float) -> Floats:
 def _labels(outline: Outline, scene: Scene) -> str:
     """Return the labels of planks (framed) and joints (plain), clear of the dots and of each other."""
     sheet: Box = (0.0, 0.0, outline.width, outline.height)
+    fittings = [outline.pieces[mark] for mark in scene.new if parse_mark(mark).family[0] == "R"]
     dots = (outline.points[mark].tolist() for mark in (*scene.dots, *scene.rings))
     taken: list[Box] = [(x - _DOT, y - _DOT, x + _DOT, y + _DOT) for x, y in dots]
+    taken += [(*piece.min(axis=0).tolist(), *piece.max(axis=0).tolist()) for piece in fittings]
     points, size = outline.points, DOT_LABEL_SIZE
     tagged = [(name, places_round(points[mark], 1.5 * LABEL_SIZE)) for mark, name in scene.tags.items()]
     named = [(name, places_along(outline.lines[mark], _SHARES)) for mark, name in scene.names.items()]
@@ -83,15 +96,29 @@ def _labels(outline: Outline, scene: Scene) -> str:
     return label_svg(numbers, framed=False) + label_svg(names)
 
 
+def _piece_items(outline: Outline, scene: Scene, beneath: bool) -> Iterable[str]:
+    """Yield the pieces of a scene beside its planks: those on the ground, which are ``beneath``, or the others."""
+    for mark, points in outline.pieces.items():
+        family = parse_mark(mark).family
+        if (family in _ON_THE_GROUND) != beneath:
+            continue
+        if mark in scene.new:
+            yield group([path(points)], PIECES.get(family, STEEL))
+        elif mark in scene.there:
+            yield group([path(points)], THERE)
+
+
 def scene_items(outline: Outline, scene: Scene) -> Iterable[str]:
     """Yield the shapes of a scene, from the lowest layer to the labels."""
     shown = {*scene.there, *scene.new, *scene.worked_on}
     yield group((path(points) for mark, points in outline.planks.items() if mark not in shown), LATER)
+    yield from _piece_items(outline, scene, beneath=True)
     for mark, points in outline.planks.items():
         if mark in scene.new:
             yield group([path(points)], NEW[mark.split("-")[1]])
         elif mark in shown:
             yield group([path(points)], FAINT_NEW if mark in scene.worked_on else THERE)
+    yield from _piece_items(outline, scene, beneath=False)
     triangles = (_triangle(outline.lines[mark][0], outline.lines[mark][1], 24.0) for mark in scene.starts)
     yield group((path(triangle) for triangle in triangles), Style("#000"))
     yield group((circle(outline.points[mark], 0.6 * _DOT) for mark in scene.done), DONE)

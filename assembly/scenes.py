@@ -2,28 +2,45 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Gridshell, Shell
+from aag_cad.parts.model import (
+    ClampingBar,
+    Footing,
+    Gridshell,
+    Mullion,
+    Rod,
+    Shell,
+    Shoe,
+    Strap,
+    Strip,
+    shell_parts,
+)
 from aag_cad.units import Floats
 from assembly.control import control_figures, sling_points
 from assembly.details import beam_strips_svg
 from assembly.drawing import Label, Style, circle, group, label_svg, line, path, svg, text
 from assembly.graph import joint_of
 from assembly.kit import shell_kit
-from assembly.outline import Outline, elevation_outline, shell_outline, vault_outline
-from assembly.pictures import NEW, THERE, Scene, scene_items, scene_svg
+from assembly.outline import Outline, elevation_outline, ridge_outline, shell_outline, vault_outline
+from assembly.pictures import NEW, PIECES, STEEL, THERE, Scene, scene_items, scene_svg
 from assembly.ranges import short_mark
+from assembly.steel import blade_section_svg, foot_section_svg, strap_section_svg
 from assembly.steps import Plan, Step
+
+_T = TypeVar("_T")
 
 PAGE_WIDTH = 1800.0
 SMALL_WIDTH = 880.0
 _MARGIN = 50.0
 _KEY_WIDTH = 170.0
 _NAME_SIZE = 48.0
+_ON_SHELLS = (Strap, Mullion, Strip, ClampingBar)
+_ON_GROUND = (Footing, Rod, Shoe)
 INK = Style("#000")
 
 
@@ -35,6 +52,7 @@ class Sheets:
     large: dict[str, Outline]
     small: dict[str, Outline]
     plan: Outline
+    ridges: dict[tuple[str, ...], Outline]
     before: dict[str, frozenset[str]]
 
 
@@ -55,9 +73,14 @@ def sheets_of(plan: Plan, gridshell: Gridshell) -> Sheets:
     """Return all outlines, drawn once for all steps."""
     return Sheets(
         gridshell=gridshell,
-        large={shell.mark: shell_outline(shell, PAGE_WIDTH, _MARGIN) for shell in gridshell.shells},
+        large={shell.mark: shell_outline(shell, PAGE_WIDTH, _MARGIN, _ON_SHELLS) for shell in gridshell.shells},
         small={shell.mark: shell_outline(shell, SMALL_WIDTH, _MARGIN) for shell in gridshell.shells},
-        plan=vault_outline(gridshell, PAGE_WIDTH * 0.8, _MARGIN),
+        plan=vault_outline(gridshell, PAGE_WIDTH * 0.8, _MARGIN, _ON_GROUND),
+        ridges={
+            step.assemblies: ridge_outline(gridshell, pair, PAGE_WIDTH, _MARGIN)
+            for step in plan.steps
+            if step.phase == "ridges" and (pair := _ridge_planks(gridshell, step.assemblies))
+        },
         before=_in_place(plan, gridshell),
     )
 
@@ -79,9 +102,9 @@ def _made_beams(shell: Shell, step: Step) -> tuple[str, ...]:
     return tuple(beam.mark for beam in shell.beams if set(beam.planks) <= set(step.marks))
 
 
-def _joints_of(step: Step) -> tuple[str, ...]:
-    """Return the joints that a step's bolts and screws belong to."""
-    fasteners = (mark for mark in step.marks if parse_mark(mark).part[:1] in ("B", "W"))
+def _joints_of(step: Step, letters: str = "BW") -> tuple[str, ...]:
+    """Return the joints that a step's bolts (B) and screws (W) belong to."""
+    fasteners = (mark for mark in step.marks if parse_mark(mark).part[:1] in tuple(letters))
     return tuple(dict.fromkeys(joint_of(mark) for mark in fasteners))
 
 
@@ -105,14 +128,19 @@ def _shell_scene(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
             tags = {mark: name for name, mark in control.items()} | dict.fromkeys(slings, "H")
             return Scene(there=there, dots=slings, rings=tuple(control.values()), tags=tags)
         case "edge planks":
-            return Scene(there=there, new=flat, names=_short(flat), rings=joints, numbers=numbers)
+            straps = tuple(strap.mark for strap in shell.straps if strap.mark in step.marks)
+            screwed = _joints_of(step, "W")
+            told = _numbers(screwed) | _short(straps)
+            return Scene(there=there, new=(*flat, *straps), names=_short(flat), rings=screwed, numbers=told)
         case "fix geodesics":
             fixed = _fixed(shell, step, single)
             done = tuple(joint_of(screw.mark) for screw in shell.screws if screw.mark in there)
             return Scene(there=there, worked_on=fixed, names=_short(fixed), dots=joints, numbers=numbers, done=done)
         case _:
-            studs, blocks = [stud.mark for stud in shell.studs], [block.mark for block in shell.blocks]
-            return Scene(there=there, dots=studs, rings=blocks)
+            studs = [stud.mark for stud in shell.studs]
+            blocks = [block.mark for block in shell.blocks if block.mark in there]
+            straps = tuple(strap.mark for strap in shell.straps if strap.mark in there)
+            return Scene(there=there, new=straps, dots=studs, rings=blocks)
 
 
 def _fixed(shell: Shell, step: Step, single: Sequence[str]) -> tuple[str, ...]:
@@ -120,6 +148,12 @@ def _fixed(shell: Shell, step: Step, single: Sequence[str]) -> tuple[str, ...]:
     members = {mark: joint.members for joint in shell.joints for mark in joint.fasteners}
     held = {member for mark in step.marks for member in members[mark]}
     return tuple(mark for mark in single if mark in held)
+
+
+def _cover_scene(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
+    """Return what the picture of the covering of one shell shows: strips with their marks, bars, places of screws."""
+    strips, mullions = [strip.mark for strip in shell.strips], [mullion.mark for mullion in shell.mullions]
+    return Scene(there=there, new=step.marks, names=_short([*strips, *mullions]), rings=_joints_of(step, "W"))
 
 
 def _elevation_svg(shell: Shell) -> str:
@@ -160,20 +194,31 @@ def _site_scene(gridshell: Gridshell, step: Step, stood: Sequence[str]) -> Scene
     feet = {
         shell.mark: tuple(joint.mark for joint in shell.joints if joint.kind == "foot") for shell in gridshell.shells
     }
-    everything = tuple(mark for listed in planks.values() for mark in listed)
+    grounded = {part.mark for shell in gridshell.shells for part in shell_parts(shell) if isinstance(part, _ON_GROUND)}
     match step.phase:
         case "feet":
-            points = tuple(mark for listed in feet.values() for mark in listed)
-            return Scene(dots=points, numbers=_numbers(points))
+            blocks = tuple(footing.mark for shell in gridshell.shells for footing in shell.footings)
+            return Scene(new=grounded, numbers=_numbers(blocks))
         case "stand":
             shell = step.assemblies[0]
-            there = tuple(mark for other in stood for mark in planks[other])
+            there = {mark for other in stood for mark in planks[other]} | grounded
             return Scene(there=there, worked_on=planks[shell], dots=feet[shell], numbers=_numbers(feet[shell]))
-        case "ridges":
-            ridge = _ridge_planks(gridshell, step.assemblies)
-            return Scene(there=everything, new=ridge, names={mark: mark for mark in ridge})
         case _:
-            return Scene(there=everything)
+            return Scene(there={mark for listed in planks.values() for mark in listed} | grounded)
+
+
+def _ridge_svg(sheets: Sheets, step: Step) -> str:
+    """Return a ridge from above, all shells there, with the blades of a step."""
+    outline, planks = sheets.ridges[step.assemblies], _ridge_planks(sheets.gridshell, step.assemblies)
+    blades = [blade.mark for blade in sheets.gridshell.blades if blade.mark in step.marks]
+    scene = Scene(
+        there={plank.mark for shell in sheets.gridshell.shells for plank in shell.planks},
+        worked_on=planks,
+        new=blades,
+        names={mark: mark for mark in planks},
+        numbers={mark: mark for mark in blades},
+    )
+    return svg(outline.width, outline.height, scene_items(outline, scene))
 
 
 def _site_svg(sheets: Sheets, step: Step, stood: Sequence[str]) -> str:
@@ -192,10 +237,29 @@ def _site_svg(sheets: Sheets, step: Step, stood: Sequence[str]) -> str:
     return svg(sheet.width, sheet.height, items)
 
 
+def _middle(pieces: Sequence[_T]) -> Sequence[_T]:
+    """Return the middle one of pieces as a list, an empty list without any."""
+    return pieces[len(pieces) // 2 : len(pieces) // 2 + 1]
+
+
+def _foot_sections(gridshell: Gridshell, step: Step) -> tuple[str, ...]:
+    """Return sections through the first two feet of a shell: their shoes lie on either side of the planks."""
+    if step.phase not in ("feet", "stand"):
+        return ()
+    shell = next((shell for shell in gridshell.shells if shell.mark in step.assemblies), gridshell.shells[0])
+    return tuple(foot_section_svg(shell, shoe) for shoe in shell.shoes[:2])
+
+
 def step_pictures(sheets: Sheets, step: Step, stood: Sequence[str] = ()) -> tuple[str, ...]:
     """Return the SVG pictures of a step: the large one first; ``stood`` are the shells that stand on site already."""
+    if step.phase == "cover":
+        covered = next(shell for shell in sheets.gridshell.shells if shell.mark == shell_of(step.marks[0]))
+        return (scene_svg(sheets.large[covered.mark], _cover_scene(covered, step, sheets.before[step.id])),)
+    if step.phase == "ridges" and step.assemblies in sheets.ridges:
+        blades = [blade for blade in sheets.gridshell.blades if blade.mark in step.marks]
+        return (_ridge_svg(sheets, step), *(blade_section_svg(sheets.gridshell, b) for b in _middle(blades)))
     if not step.shell:
-        return (_site_svg(sheets, step, stood),)
+        return (_site_svg(sheets, step, stood), *_foot_sections(sheets.gridshell, step))
     shell = next(shell for shell in sheets.gridshell.shells if shell.mark == step.shell)
     scene = _shell_scene(shell, step, sheets.before[step.id])
     if step.phase == "prefabricate":
@@ -203,7 +267,8 @@ def step_pictures(sheets: Sheets, step: Step, stood: Sequence[str] = ()) -> tupl
         return strips, scene_svg(sheets.small[shell.mark], scene)
     if step.phase == "hoist":
         return scene_svg(sheets.large[shell.mark], scene), _elevation_svg(shell)
-    return (scene_svg(sheets.large[shell.mark], scene),)
+    straps = [strap for strap in shell.straps if strap.mark in step.marks]
+    return (scene_svg(sheets.large[shell.mark], scene), *(strap_section_svg(shell, s) for s in _middle(straps)))
 
 
 def phase_svg(sheets: Sheets, plan: Plan, step: Step) -> str:
@@ -232,5 +297,5 @@ def key_svg(gridshell: Gridshell, shell: str) -> str:
 def legend_svgs() -> dict[str, str]:
     """Return the swatches of the legend by name."""
     box = np.array([(2.0, 6.0), (88.0, 6.0), (88.0, 34.0), (2.0, 34.0)])
-    styles = {"there": THERE, **NEW}
+    styles = {"there": THERE, "steel": STEEL, **NEW, **PIECES}
     return {name: svg(90.0, 40.0, [group([path(box)], style)]) for name, style in styles.items()}

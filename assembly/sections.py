@@ -17,7 +17,7 @@ _AXIS = 200.0
 _WORDS = 24.0
 
 
-def _callout(x: float, y: float, to_x: float, to_y: float, words: str) -> Iterator[str]:
+def callout(x: float, y: float, to_x: float, to_y: float, words: str) -> Iterator[str]:
     """Yield a line from a place on a part to words at its right."""
     yield line(np.array([(to_x, to_y), (x, y)]), _THIN)
     yield group([circle((to_x, to_y), 3.0), text(words, x + 8.0, y, _WORDS, "start")], _INK)
@@ -60,9 +60,9 @@ def node_section_svg(shell: Shell) -> str:
     items += [_beam(centre + side * lift, section, stud.across_flats) for side in (-1.0, 1.0)]
     items += [_bolt(centre - _UNIT * hole.height, bolt) for hole in stud.holes]
     right, plank_x = _AXIS + 130.0, _AXIS + flat / 2.0 + _UNIT * section.thickness / 2.0
-    items += _callout(right, centre - lift, plank_x, centre - lift, "A2 upper beam")
-    items += _callout(right, centre, _AXIS, centre, f"N hexagon stud {stud.length:g} mm")
-    items += _callout(right, centre + lift, plank_x, centre + lift, "A1 lower beam")
+    items += callout(right, centre - lift, plank_x, centre - lift, "A2 upper beam")
+    items += callout(right, centre, _AXIS, centre, f"N hexagon stud {stud.length:g} mm")
+    items += callout(right, centre + lift, plank_x, centre + lift, "A1 lower beam")
     return svg(720.0, 2.0 * centre, items)
 
 
@@ -84,8 +84,8 @@ def block_section_svg(shell: Shell) -> str:
     outline = np.array([_AXIS, top]) + np.concatenate([half, half[::-1] * [-1.0, 1.0]])
     items.append(polygon(outline, _INK))
     right, plank_x = _AXIS + 210.0, _AXIS + gap / 2.0 + thick / 2.0
-    items += _callout(right, top - 45.0, _AXIS, top, f"screw {screw.diameter:g} x {screw.length:g}, driven last")
-    items += _callout(right, top + thick / 2.0, _AXIS + 150.0, top + thick / 2.0, "G geodesic, slides until then")
-    items += _callout(right, low + 0.4 * wide, _AXIS + gap / 3.0, low + 0.4 * wide, "K coupling block")
-    items += _callout(right, low + 0.9 * wide, plank_x, low + 0.9 * wide, "A1 lower beam")
+    items += callout(right, top - 45.0, _AXIS, top, f"screw {screw.diameter:g} x {screw.length:g}, driven last")
+    items += callout(right, top + thick / 2.0, _AXIS + 150.0, top + thick / 2.0, "G geodesic, slides until then")
+    items += callout(right, low + 0.4 * wide, _AXIS + gap / 3.0, low + 0.4 * wide, "K coupling block")
+    items += callout(right, low + 0.9 * wide, plank_x, low + 0.9 * wide, "A1 lower beam")
     return svg(870.0, low + wide + 20.0, items)

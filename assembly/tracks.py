@@ -84,7 +84,9 @@ class Tracks:
         return frozenset(self.bay(bay) for bay in range(low, high))
 
 
-def _listed(member: Beam | Plank, joints: dict[str, Joint], lines: dict[str, int]) -> Iterator[tuple[JointStation, int]]:
+def _listed(
+    member: Beam | Plank, joints: dict[str, Joint], lines: dict[str, int]
+) -> Iterator[tuple[JointStation, int]]:
     """Yield the joints of a member with a geodesic, and its line."""
     for place in member.joints:
         joint = joints.get(place.joint)

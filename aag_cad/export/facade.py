@@ -44,7 +44,7 @@ FACADE_HEADER = (
 ORDINATE_SPACING = 250.0
 _SAME = 0.1
 _COMPARED = 17
-_SMALL, _LARGE = 20.0, 45.0
+_SMALL, _LARGE = 32.0, 90.0
 _ROW = 1.8
 
 
@@ -149,7 +149,7 @@ def _ordinate_table(flat: FlatPattern, names: Sequence[str], low: float) -> list
         for place, text in ((y, "along it"), (y - _ROW * _SMALL, f"edge on {name}")):
             items.append(Text(TITLE, text, (-60.0, place), _SMALL, "right"))
         ordinates = edge_ordinates(edge)
-        if len(ordinates) > 2 and ordinates[-1][0] - ordinates[-2][0] < 6.0 * _SMALL:
+        if len(ordinates) > 2 and ordinates[-1][0] - ordinates[-2][0] < 4.5 * _SMALL:
             ordinates.pop(-2)
         for station, ordinate in ordinates:
             items.append(Text(TITLE, f"{station:.1f}".removesuffix(".0"), (station, y), _SMALL, "centre"))
@@ -191,25 +191,25 @@ def strip_drawing(pattern: StripPattern, design: Design, title: str) -> Drawing:
     items: list[Item] = [Polyline(OUTLINE, _points(flat.outline))]
     items += [item for edge in (flat.left, flat.right) for item in _edge_items(edge)]
     items += _arrow(middle - 500.0, 0.0, 1000.0)
-    items.append(Text(MARKS, pattern.name, (middle - 560.0, 0.0), 2.0 * _LARGE, "right"))
-    items.append(Text(MARKS, "ribs, bending, upwards", (middle, 35.0), _SMALL, "centre"))
+    items.append(Text(MARKS, pattern.name, (middle - 560.0, 0.0), _LARGE, "right"))
+    items.append(Text(MARKS, "ribs, bending, upwards", (middle, 1.5 * _SMALL), _SMALL, "centre"))
     for name, edge, sign in zip(names, (flat.left, flat.right), (1.0, -1.0), strict=True):
-        y = float(np.interp(middle, edge[:, 0], edge[:, 1])) + sign * 40.0
+        y = float(np.interp(middle, edge[:, 0], edge[:, 1])) + sign * 1.5 * _SMALL
         items.append(Text(MARKS, f"edge on {name}", (middle, y), _SMALL, "centre"))
     items.append(Text(MARKS, "FOOT", (-20.0, 0.0), _SMALL, "right"))
     items.append(Text(MARKS, "TOP", (flat.length + 20.0, 0.0), _SMALL))
-    low = below - 80.0
+    low = below - 3.0 * _SMALL
     items += _ordinate_table(flat, names, low)
-    low -= 7.0 * _ROW * _SMALL
+    low -= 7.5 * _ROW * _SMALL
     items += [
         Line(CHECK_BAR, (0.0, low), (CHECK_LENGTH, low)),
         *(Line(CHECK_BAR, (x, low - 10.0), (x, low + 10.0)) for x in (0.0, CHECK_LENGTH)),
-        Text(CHECK_BAR, f"check bar {CHECK_LENGTH:g} mm", (0.0, low + 30.0), _SMALL),
+        Text(CHECK_BAR, f"check bar {CHECK_LENGTH:g} mm", (0.0, low + 1.2 * _SMALL), _SMALL),
     ]
     for number, line in enumerate(_title_lines(pattern, design, title)):
-        items.append(Text(TITLE, line, (400.0, low - _ROW * _SMALL * number), _SMALL))
+        items.append(Text(TITLE, line, (600.0, low - _ROW * _SMALL * number), _SMALL))
     low -= 6.0 * _ROW * _SMALL
-    return Drawing(pattern.name, tuple(items), (-400.0, low, flat.length + 150.0, above + 60.0))
+    return Drawing(pattern.name, tuple(items), (-450.0, low, flat.length + 200.0, above + 60.0))
 
 
 def write_flat_patterns(design: Design, gridshell: Gridshell, folder: str | os.PathLike[str]) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from aag_cad.mechanics.frame_elements import even_load_forces
-from aag_cad.mechanics.frame_factor import Singular, factor, lowest_pairs
+from aag_cad.mechanics.frame_factor import SingularError, factor, lowest_pairs
 from aag_cad.mechanics.frame_model import FrameError, FrameModel, LineLoad, NodalLoad
 from aag_cad.mechanics.frame_system import (
     FrameSystem,
@@ -114,7 +114,7 @@ def static_solution(
         solved = factor(held_part(system, against_unknowns(system, full))).solve(
             (system.transform.T @ loads)[system.free]
         )
-    except Singular as error:
+    except SingularError as error:
         raise mechanism_error(system, _spread(system, error.mode)) from error
     moved = system.transform @ _spread(system, solved)
     reactions = _reactions(system, full @ moved - loads)
@@ -125,7 +125,7 @@ def static_solution(
 
 
 def _reactions(system: FrameSystem, missing: Floats) -> Floats:
-    """Return the forces (n, 6) at the supports from what is missing to balance (6 n,), slaves' shares at their masters."""
+    """Return the forces (n, 6) at the supports from what is missing to balance (6 n,), those of slaves at masters."""
     at_unknowns = system.transform.T @ missing
     at_unknowns[system.free] = 0.0
     free_nodes = {link.slave for link in system.model.links}
@@ -153,6 +153,6 @@ def lowest_modes(model: FrameModel, count: int, masses: Floats | None = None) ->
         mass = held_part(system, mass_matrix(system, masses / _KG_PER_TONNE))
     try:
         values, modes = lowest_pairs(stiffness, mass, min(count, size), None)
-    except Singular as error:
+    except SingularError as error:
         raise mechanism_error(system, _spread(system, error.mode)) from error
     return FrameModes(values, (system.transform @ _spread(system, modes)).reshape(len(system.points), 6, -1))

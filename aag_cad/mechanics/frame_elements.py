@@ -1,4 +1,4 @@
-"""Euler-Bernoulli beam elements with St Venant torsion, many at a time; ends in the order of the six local dofs each."""
+"""Euler-Bernoulli beam elements with St Venant torsion, many at a time; six local dofs at the start, then the end."""
 
 from dataclasses import dataclass
 
@@ -82,7 +82,10 @@ def cross_matrices(arms: Floats) -> Floats:
 
 def _released(element: FrameElement, stiffness: Floats) -> tuple[Floats, Floats]:
     """Return stiffness and force condensation, (12, 12) each, of an element with releases."""
-    places = ((DOFS.index(d), d) for d in element.start_releases), ((6 + DOFS.index(d), d) for d in element.end_releases)
+    places = (
+        ((DOFS.index(d), d) for d in element.start_releases),
+        ((6 + DOFS.index(d), d) for d in element.end_releases),
+    )
     free: list[tuple[int, Dof]] = [pair for end in places for pair in end]
     gone = np.array([place for place, _ in free])
     inner = stiffness[np.ix_(gone, gone)]

@@ -10,8 +10,8 @@ from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
 
 from aag_cad.units import Floats
 
-# A pivot is what is left of a diagonal entry when all before it are eliminated: 1e-16 of it is rounding. A cantilever of
-# 1000 equal elements still leaves 1e-10 at its tip.
+# A pivot is what is left of a diagonal entry when all before it are eliminated: 1e-16 of it is rounding. A cantilever
+# of 1000 equal elements still leaves 1e-10 at its tip.
 PIVOT_LIMIT = 1e-12
 RESIDUAL_LIMIT = 1e-6
 _DENSE = 60
@@ -21,7 +21,7 @@ _NO_SHIFT = 1e-10
 Solve = Callable[[Floats], Floats]
 
 
-class Singular(ArithmeticError):
+class SingularError(ArithmeticError):
     """A stiffness that does not hold: ``mode`` (u,) is how its unknowns move without force."""
 
     def __init__(self, mode: Floats) -> None:
@@ -38,12 +38,12 @@ class Factor:
     lu: SuperLU
 
     def solve(self, right: Floats) -> Floats:
-        """Return the solution of right sides (u,) or (u, k), refined once; Singular if the residual stays large."""
+        """Return the solution of right sides (u,) or (u, k), refined once; SingularError if a residual stays."""
         found = self.lu.solve(right)
         found = found + self.lu.solve(right - self.matrix @ found)
         size = float(np.abs(right).max(initial=0.0))
         if size > 0.0 and not float(np.abs(self.matrix @ found - right).max()) <= RESIDUAL_LIMIT * size:
-            raise Singular(free_mode(self.matrix))
+            raise SingularError(free_mode(self.matrix))
         return np.asarray(found)
 
 
@@ -71,17 +71,17 @@ def free_mode(matrix: csc_array) -> Floats:
 
 
 def factor(matrix: csc_array) -> Factor:
-    """Return the factor of a symmetric positive matrix (u, u); Singular with its mode if it holds something loosely."""
+    """Return the factor of a symmetric positive matrix (u, u); SingularError with its mode if it is loose."""
     diagonal = matrix.diagonal()
     if not diagonal.min(initial=1.0) > 0.0:
-        raise Singular(free_mode(matrix))
+        raise SingularError(free_mode(matrix))
     try:
         lu = _symmetric_lu(matrix)
     except RuntimeError as error:
-        raise Singular(free_mode(matrix)) from error
+        raise SingularError(free_mode(matrix)) from error
     pivots = lu.U.diagonal()[lu.perm_c]
     if not (np.array_equal(lu.perm_r, lu.perm_c) and bool(np.all(pivots > PIVOT_LIMIT * diagonal))):
-        raise Singular(free_mode(matrix))
+        raise SingularError(free_mode(matrix))
     return Factor(matrix, lu)
 
 
@@ -97,7 +97,7 @@ def lowest_pairs(
 ) -> tuple[Floats, Floats]:
     """Return the lowest eigenvalues (k,) of K v = lambda M v and their vectors (u, k), v.T M v = 1; k <= count.
 
-    Mechanisms come out as eigenvalues of about 0, within 1e-10 of the mean of K over M. Singular if something that
+    Mechanisms come out as eigenvalues of about 0, within 1e-10 of the mean of K over M. SingularError if something that
     moves without force has no mass either. ``start`` (u,) is a guess of the softest mode.
     """
     weights = mass.diagonal()

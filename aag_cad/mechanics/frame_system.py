@@ -1,6 +1,7 @@
 """The stiffness of a frame against its unknowns: rigid links and pins are eliminated, not made of stiff springs."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array
@@ -39,11 +40,12 @@ def _node_index(model: FrameModel) -> dict[str, int]:
     index = {node.mark: i for i, node in enumerate(model.nodes)}
     if len(index) < len(model.nodes):
         marks = sorted(node.mark for node in model.nodes)
-        twice = next(a for a, b in zip(marks, marks[1:], strict=False) if a == b)
+        twice = next(a for a, b in pairwise(marks) if a == b)
         raise FrameError(f"{twice}: two nodes have this mark; marks of nodes are unique")
     places = [(link.master, link.slave) for link in model.links]
-    places += [(item.node, item.node) for item in (*model.supports, *model.springs)]
-    for mark in (mark for pair in places for mark in pair):
+    named = [mark for pair in places for mark in pair]
+    named += [support.node for support in model.supports] + [spring.node for spring in model.springs]
+    for mark in named:
         if mark not in index:
             raise FrameError(f"{mark}: a link, support or spring names this node, which is not in the model; add it")
     return index

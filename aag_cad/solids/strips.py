@@ -17,7 +17,7 @@ from aag_cad.solids import brep
 from aag_cad.units import Floats
 
 _DEGREE = 5
-_CUT_SAMPLES = 33
+_CUT_SAMPLES = 13
 _BELOW, _ABOVE = 0, 1
 
 
@@ -103,7 +103,7 @@ def _corners(skin: _Skin, cut: Sequence[float]) -> list[_Corner]:
 
 def _curve_2d(spline: BSpline) -> Geom2d_BSplineCurve:
     poles = TColgp_Array1OfPnt2d(1, len(spline.c))
-    for i, (x, y) in enumerate(spline.c.tolist(), 1):
+    for i, (x, y) in enumerate(np.asarray(spline.c).tolist(), 1):
         poles.SetValue(i, gp_Pnt2d(x, y))
     return Geom2d_BSplineCurve(poles, *brep.knots_of(_DEGREE, spline.t), _DEGREE)
 

@@ -215,8 +215,8 @@ def meetings(shell: Shell, cover: Sequence[Part]) -> Iterator[tuple[float, str, 
 
 
 def test_cover_and_gridshell_touch_but_do_not_run_into_each_other(clad_shell: Shell) -> None:
-    """A side, the middle and the crown stand for the rest: bars and strips of each."""
-    places = (0, 6, 12)
+    """The side and the middle stand for the rest: strips and bars of both."""
+    places = (0, 6)
     cover = [group[i] for group in (clad_shell.strips, clad_shell.mullions, clad_shell.clamps) for i in places]
     assert 0.0 < max(meetings(clad_shell, cover))[0] < CONTACT
 

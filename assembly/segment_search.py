@@ -1,0 +1,145 @@
+"""Where a shell is cut so that each of its segments fits the transport: exact over all cuts along geodesics."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+from aag_cad.units import Vector
+from assembly.boxes import Pose, best_pose
+from assembly.partition import best_chain, best_ring
+from assembly.runs import Divisible, Run, run_between, run_splices
+
+_ROUNDING = 1e-9
+_GRAMS = 1000.0
+_WIDEST = 4.0
+_HALVINGS = 6
+
+
+@dataclass(frozen=True)
+class Limits:
+    """The largest piece that travels: inner length, width and height of the transport, mm; its load and a crane's, kg.
+
+    ``crane`` is None where none limits the mass.
+    """
+
+    length: float
+    width: float
+    height: float
+    mass: float
+    crane: float | None = None
+
+    @property
+    def room(self) -> Vector:
+        """Length, width and height, mm."""
+        return self.length, self.width, self.height
+
+    @property
+    def load(self) -> float:
+        """The mass that both transport and crane carry, kg."""
+        return self.mass if self.crane is None else min(self.mass, self.crane)
+
+
+def pose_in(run: Run, limits: Limits, enough: float = 0.0) -> Pose:
+    """Return the pose of a run that leaves most room in the transport."""
+    return best_pose(run.corners, limits.room, enough)
+
+
+def fits(run: Run, limits: Limits) -> bool:
+    """Return whether a run is light enough and a pose was found in which it fits."""
+    return run.mass <= limits.load and pose_in(run, limits, 1.0).filling <= 1.0 + _ROUNDING
+
+
+def furthest(stops: Sequence[int], count: int, fitting: Callable[[int, int], bool]) -> dict[int, int]:
+    """Return for each of the first ``count`` stops the furthest stop to which the run between them fits.
+
+    What lies between two stops also lies between any two around them, so the furthest one never goes back: about two
+    looks per stop are enough. A stop from which nothing fits is its own furthest.
+    """
+    found, j = {}, 0
+    for i in range(count):
+        j = max(j, i)
+        while j + 1 < len(stops) and fitting(stops[i], stops[j + 1]):
+            j += 1
+        found[stops[i]] = stops[j]
+    return found
+
+
+def _owns(item: Divisible, start: int, end: int) -> bool:
+    """Return whether a run keeps a geodesic and has two different lines as its sides."""
+    return bool(item.tracks.owned(start, end)) and start // 2 != end // 2
+
+
+def best_stops(item: Divisible, limits: Limits) -> tuple[int, ...] | None:
+    """Return the stops at which a shell is cut, () to carry it whole, None if no cuts along geodesics make it fit.
+
+    Fewest segments, then fewest cut beams (a beam cut twice counts twice), then least variance of the masses to the
+    gram, then the lowest stops. Each segment keeps at least one geodesic.
+    """
+    grid = item.tracks
+    stops, turn = grid.stops(), 2 * len(grid.lines)
+    ends = (stops[0], stops[0] + turn) if grid.ring else (stops[0], stops[-1])
+    if fits(run_between(item, *ends), limits):
+        return ()
+
+    def fitting(start: int, end: int) -> bool:
+        if grid.ring and end - start >= turn:
+            return False
+        return not _owns(item, start, end) or fits(run_between(item, start, end), limits)
+
+    far = (*stops, *(stop + turn for stop in stops)) if grid.ring else stops
+    reach = furthest(far, len(stops), fitting)
+
+    @cache
+    def grams(start: int, end: int) -> int | None:
+        if end > reach[start] or not _owns(item, start, end):
+            return None
+        return round(_GRAMS * run_between(item, start, end).mass)
+
+    def cost(stop: int) -> int:
+        return sum(splice.kind == "block" for splice in run_splices(item, stop))
+
+    best = best_ring(stops, turn, cost, grams, None) if grid.ring else best_chain(stops, cost, grams)
+    return None if best is None else best.stops
+
+
+def segment_ends(item: Divisible, stops: tuple[int, ...]) -> list[tuple[int, int]]:
+    """Return (start, end) of each segment for the stops at which a shell is cut."""
+    grid = item.tracks
+    if grid.ring:
+        around = (*stops, stops[0] + 2 * len(grid.lines)) if stops else (2, 2 + 2 * len(grid.lines))
+        return list(zip(around, around[1:], strict=False))
+    chain = (grid.stops()[0], *stops, grid.stops()[-1])
+    return list(zip(chain, chain[1:], strict=False))
+
+
+def smallest_runs(item: Divisible) -> list[tuple[int, int]]:
+    """Return the runs that keep a single geodesic: what is left if a shell is cut along every one."""
+    stops = item.tracks.stops()
+    far = (*stops, *(stop + 2 * len(item.tracks.lines) for stop in stops)) if item.tracks.ring else stops
+    pairs = [(a, b) for a in stops for b in far if a < b <= a + 3 and _owns(item, a, b)]
+    return [(a, b) for a, b in pairs if len(item.tracks.owned(a, b)) == 1]
+
+
+def least_widths(run: Run, limits: Limits) -> tuple[float | None, float | None]:
+    """Return the least width and the least height, mm, that alone would make a run fit; None if four times is too little.
+
+    Each by halving, to an eightieth of the range in the worst case; the width found is that of a pose and so is enough.
+    """
+
+    def least(axis: int) -> float | None:
+        low, high, found = limits.room[axis], _WIDEST * limits.room[axis], None
+        for k in range(_HALVINGS + 1):
+            tried = high if k == 0 else (low + high) / 2.0
+            room = (limits.length, *(tried if i == axis else limits.room[i] for i in (1, 2)))
+            pose = best_pose(run.corners, (room[0], room[1], room[2]), 1.0)
+            if pose.filling <= 1.0 + _ROUNDING:
+                high = found = pose.size[axis]
+            elif k == 0:
+                return None
+            else:
+                low = tried
+            if high <= low:
+                break
+        return found
+
+    return least(1), least(2)
