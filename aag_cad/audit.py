@@ -236,9 +236,9 @@ _ORDER = {"error": 0, "warning": 1, "note": 2}
 
 
 def stock_findings(purchases: Purchases) -> Iterator[Finding]:
-    """Yield AAG901 and on: what the stock cannot give; an error where a part cannot be cut at all."""
+    """Yield what the stock cannot give: parts that are too long (AAG901), old planks (AAG902), strips (AAG903)."""
     for refused in purchases.refused:
-        severity: Severity = "warning" if refused.code == _OLD_PLANK else "error"
+        severity: Severity = "note" if refused.code == _OLD_PLANK else "error"
         yield Finding(
             refused.code, severity, refused.mark, refused.what, refused.found, refused.allowed, refused.unit,
             refused.remedy,

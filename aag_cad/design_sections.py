@@ -322,7 +322,9 @@ class Crew(Section):
     start: Annotated[str, AfterValidator(_iso_date)] | None = Field(
         None, description="first working day as text, year-month-day, for the calendar"
     )
-    minutes: Minutes = Field(Minutes(), description="of one person, by what is done, in place of our estimates")
+    minutes: Minutes = Field(
+        default_factory=Minutes, description="of one person, by what is done, in place of our estimates"
+    )
 
 
 class Stock(Section):

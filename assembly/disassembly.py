@@ -308,7 +308,8 @@ def _words(
 ) -> tuple[tuple[str, ...], ...]:
     """Return tools, instructions and (hold,) of a task, with sizes of spanners and the energy of a hanging shell."""
     listed: list[Bolt | Rod] = [*gridshell.bolts]
-    listed += (part for shell in gridshell.shells for part in (*shell.bolts, *shell.rods))
+    for shell in gridshell.shells:
+        listed += [*shell.bolts, *shell.rods]
     leaving = set(task.marks)
     out = [part for part in listed if part.mark in leaving]
     held = [bolt for shell in gridshell.shells if shell.mark == task.shell for bolt in shell.bolts]

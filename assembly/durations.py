@@ -5,7 +5,7 @@ estimate, to be replaced by measured times.
 """
 
 import math
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -29,7 +29,6 @@ from aag_cad.parts.model import (
     Strap,
     Strip,
     Stud,
-    all_joints,
     all_parts,
 )
 from aag_cad.parts.quantities import sizes
@@ -88,7 +87,7 @@ def _work_with(known: _Lengths, step: Step) -> StepWork:
     """Return what is done in a step."""
     phase: str = step.phase
     down = phase in DOWN_PHASES
-    handled, done, undone = Counter[str](), Counter[str](), Counter[str]()
+    handled, done = Counter[str](), defaultdict[str, float](float)
     for mark in step.marks:
         part = known.parts.get(mark)
         if part is None:
@@ -108,8 +107,10 @@ def _work_with(known: _Lengths, step: Step) -> StepWork:
         done[_ONCE[phase]] += 1
     handled["ridge"] += phase in ("ridges", "open ridges")
     handled["hoist"] += phase == "hang"
-    (undone if down else done).update(handled)
-    return StepWork(*({kind: count for kind, count in sorted(c.items()) if count} for c in (done, undone)))
+    undone = dict(handled) if down else {}
+    for kind, count in ({} if down else handled).items():
+        done[kind] += count
+    return StepWork(*({kind: n for kind, n in sorted(each.items()) if n} for each in (done, undone)))
 
 
 def step_works(plan: Plan, gridshell: Gridshell) -> dict[str, StepWork]:
@@ -123,7 +124,7 @@ def step_works(plan: Plan, gridshell: Gridshell) -> dict[str, StepWork]:
 
 def person_minutes(step: Step, work: StepWork, minutes: Minutes) -> float:
     """Return the person-minutes of a step, with the time in which each of its people gets ready."""
-    times = minutes.model_dump()
+    times: dict[str, float] = minutes.model_dump()
     done = sum(count * times[kind] for kind, count in work.done.items())
     undone = sum(count * times[kind] for kind, count in work.undone.items())
     return step.crew * minutes.setup + done + minutes.removal * undone

@@ -83,7 +83,8 @@ def _triangle(start: Floats, towards: Floats, size: float) -> Floats:
 def _labels(outline: Outline, scene: Scene) -> str:
     """Return the labels of planks (framed) and joints (plain), clear of the dots and of each other."""
     sheet: Box = (0.0, 0.0, outline.width, outline.height)
-    fittings = [outline.pieces[mark] for mark in scene.new if parse_mark(mark).family[0] == "R"]
+    new = ((mark, piece) for mark, piece in outline.pieces.items() if mark in scene.new)
+    fittings = [piece for mark, piece in new if parse_mark(mark).family[0] == "R"]
     dots = (outline.points[mark].tolist() for mark in (*scene.dots, *scene.rings))
     taken: list[Box] = [(x - _DOT, y - _DOT, x + _DOT, y + _DOT) for x, y in dots]
     taken += [(*piece.min(axis=0).tolist(), *piece.max(axis=0).tolist()) for piece in fittings]

@@ -182,7 +182,7 @@ def _starts(plan: Plan, graph: "nx.DiGraph[str]", minutes: Mapping[str, int], pe
         length, crew = minutes[step], by_id[step].crew
         earliest = max((starts[before] + minutes[before] for before in graph.predecessors(step)), default=0)
         start = _first_fit(times, free, earliest, length, crew)
-        while by_id[step].phase in UNBROKEN and 0 < start % day and start % day + length > day:
+        while by_id[step].phase in UNBROKEN and start % day > 0 and start % day + length > day:
             start = _first_fit(times, free, (start // day + 1) * day, length, crew)
         if length:
             _take(times, free, start, start + length, crew)
@@ -207,8 +207,8 @@ def schedule_of(plan: Plan, minutes: Mapping[str, int], people: int, hours_per_d
     crowded = [step for step in plan.steps if not 1 <= step.crew <= people]
     if crowded:
         raise PlanError(
-            f"step {crowded[0].id}: it takes {crowded[0].crew} people, but the crew has {people}; allowed 1 to {people}: "
-            "plan it for this crew, or enlarge crew.people"
+            f"step {crowded[0].id}: it takes {crowded[0].crew} people, allowed 1 to {people}: plan it for this "
+            "crew, or enlarge crew.people"
         )
     graph = precedence(plan, minutes)
     starts, earliest, tails = (

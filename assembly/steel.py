@@ -151,13 +151,13 @@ def strap_section_svg(shell: Shell, strap: Strap) -> str:
     flat, bolts = _in_frame(frame), [bolt for bolt in shell.bolts if bolt.mark in joint.fasteners]
     end = geodesic.blank.length
     timber = [flat(_band(geodesic, end - _ALONG, end)), flat(_cross(edge, joint.mark))]
-    steel = flat(_band(strap, 0.0, strap.curve.length))
+    steel, middle = flat(_band(strap, 0.0, strap.curve.length)), strap.curve.length / 2.0
     items = [*(polygon(outline, _TIMBER) for outline in timber), polygon(steel, _STEEL), *_bolt_items(bolts, flat)]
     words = [
         (timber[0].mean(axis=0), "G geodesic"),
         (timber[1].mean(axis=0), "E edge plank"),
         (
-            flat(_band(strap, strap.curve.length / 2.0, strap.curve.length / 2.0))[0],
+            flat(_band(strap, middle, middle))[0],
             f"R strap, {strap.blank.section.thickness:g} mm",
         ),
     ]

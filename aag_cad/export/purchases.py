@@ -5,7 +5,6 @@ import io
 import os
 from collections.abc import Iterable, Iterator, Sequence
 
-from aag_cad.audit import Finding
 from aag_cad.files import write_text
 from aag_cad.shop.purchases import CutStock, Purchase, Purchases
 
@@ -15,17 +14,6 @@ PURCHASES_HEADER = (
 CUTTING_HEADER = (
     "stock", "number", "stock_length_mm", "position_mm", "cut_length_mm", "mark", "length_mm", "piece", "note",
 )  # fmt: skip
-
-
-def purchase_findings(purchases: Purchases) -> list[Finding]:
-    """Return what the stock cannot give: parts that are too long (AAG901), old planks (AAG902), strips (AAG903)."""
-    return [
-        Finding(
-            refusal.code, "note" if refusal.code == "AAG902" else "error", refusal.mark, refusal.what, refusal.found,
-            refusal.allowed, refusal.unit, refusal.remedy,
-        )
-        for refusal in purchases.refused
-    ]  # fmt: skip
 
 
 def purchase_row(line: Purchase) -> tuple[str, ...]:

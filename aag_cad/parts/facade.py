@@ -133,8 +133,8 @@ def _bar(
     middle = (item.start + item.end) / 2.0
     start = _where(least(_over_foot(design)), -_REACH, middle, "facade.foot_clearance", mark)
     end = _where(least(top), item.curve.length + _REACH, middle, "facade.ridge_clearance", mark)
-    curve = offset_curve(item.curve, height, 0.0, start, end)
-    return curve, Blank(curve.length, section, ())
+    line = offset_curve(item.curve, height, 0.0, start, end)
+    return line, Blank(line.length, section, ())
 
 
 def _bars(design: Design, items: list[NetworkCurve]) -> tuple[list[Mullion], list[ClampingBar]]:
@@ -188,9 +188,8 @@ def _strip(design: Design, pair: tuple[NetworkCurve, NetworkCurve]) -> Strip:
         for item, sign in zip(pair, (1.0, -1.0), strict=True)
     )
     low, high = shared_range(left, right)
-    sheet = sheet_of(
-        Strip(mark, *ruled_edges(left, right, low, high, SAMPLE_SPACING), thickness, (0.0, 0.0), (1.0, 1.0))
-    )
+    edges = ruled_edges(left, right, low, high, SAMPLE_SPACING)
+    sheet = sheet_of(Strip(mark, *edges, thickness, (0.0, 0.0), (1.0, 1.0)))
     lower = tuple(_corner(sheet, _over_foot(design), v, 0.0, "facade.foot_clearance", mark) for v in (0.0, 1.0))
     upper = _upper_cut(design, sheet, pair, mark)
     first, last = min(lower), max(upper)
@@ -372,11 +371,9 @@ def placed_facade(design: Design, network: CurveNetwork, shell: Shell) -> Facade
     near = {mark for joint in shell.joints if joint.kind != "AA" for mark in joint.fasteners}
     bolts = [bolt for bolt in shell.bolts if bolt.mark in near]
     among = obstacles([*shell.planks, *shell.straps, *shell.shoes, *bolts, *shell.blocks], shell.placement)
-    done: list[FacadePieces] = []
+    done = [FacadePieces(strips=tuple(strips))]
     for line in lines:
-        first = sum(len(pieces.joints) for pieces in done) + 1
-        done += _fixed_line(design, line, shell.joints, among, first)
-    done.append(FacadePieces(strips=tuple(strips)))
+        done += _fixed_line(design, line, shell.joints, among, sum(len(pieces.joints) for pieces in done) + 1)
     names = [field.name for field in fields(FacadePieces)]
     return FacadePieces(**{name: tuple(piece for pieces in done for piece in getattr(pieces, name)) for name in names})
 

@@ -58,7 +58,7 @@ def hexagon_bolt(mark: str, diameter: float, grip: float, frame: Frame) -> Bolt:
 
 
 def threaded_rod(mark: str, diameter: float, length: float, nuts: tuple[float, float], frame: Frame) -> Rod:
-    """Return a threaded rod (DIN 976-1) with ISO 4032 nuts and ISO 7093-1 washers at two heights over its lower end."""
+    """Return a threaded rod (DIN 976-1) with ISO 4032 nuts and ISO 7089 washers at two heights over its lower end."""
     size = _catalogue()[f"M{diameter:g}"]
     return Rod(
         mark=mark,

@@ -204,11 +204,11 @@ def _fasteners(part: Part) -> list[tuple[str, str, str, int, float]]:
                 first = ("hexagon bolt", f"{thread} x {part.length:g}", "ISO 4014", 1, bolt)
             else:
                 first = ("threaded rod", f"{thread} x {math.ceil(part.length)}", "DIN 976-1", 1, bolt)
-            nuts = 1 if isinstance(part, Bolt) else 2
+            nuts, washers = (1, "ISO 7093-1") if isinstance(part, Bolt) else (2, "ISO 7089")
             return [
                 first,
                 ("hexagon nut", thread, "ISO 4032", nuts, nut),
-                ("washer", thread, "ISO 7093-1", 2, washer),
+                ("washer", thread, washers, 2, washer),
             ]
         case Screw():
             size = f"{part.diameter:g} x {part.length:g}"

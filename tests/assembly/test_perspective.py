@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from aag_cad.parts.model import Gridshell, Shell
 from aag_cad.units import Floats
 from assembly.faces import gridshell_faces, tube_faces
-from assembly.pieces import plank_rings
 from assembly.painting import covers_of, painting_order, samples_of, unhidden
 from assembly.perspective import perspective_svg
+from assembly.pieces import plank_rings
 
 
 def square(x: float, y: float, size: float) -> Floats:
