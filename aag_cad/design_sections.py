@@ -323,7 +323,8 @@ class Crew(Section):
         None, description="first working day as text, year-month-day, for the calendar"
     )
     minutes: Minutes = Field(
-        default_factory=Minutes, description="of one person, by what is done, in place of our estimates"
+        default_factory=lambda: Minutes.model_validate({}),
+        description="of one person, by what is done, in place of our estimates",
     )
 
 
@@ -383,21 +384,24 @@ class Site(Section):
     """
 
     name: Text = "Site"
-    building: Text | None = Field(None, description="name of the building; without it, project.title")
-    address: tuple[Text, ...] = Field((), description="lines of the postal address, the street first, the town last")
-    epsg: Annotated[Count, Field(ge=1024, le=998999)] | None = Field(
-        None, description="number of the projected coordinate system in the EPSG register, e.g. 25832"
+    building: Text | None = Field(default=None, description="name of the building; without it, project.title")
+    address: tuple[Text, ...] = Field(
+        default=(), description="lines of the postal address, the street first, the town last"
     )
-    crs_name: Text | None = Field(None, description="its name, e.g. ETRS89 / UTM zone 32N")
-    vertical_datum: Text | None = Field(None, description="of the height, e.g. DHHN2016")
-    eastings: Number | None = Field(None, description="m, of the vault's origin")
-    northings: Number | None = Field(None, description="m, of the vault's origin")
-    height: Number = Field(0.0, description="m over the vertical datum, of the vault's origin")
+    epsg: Annotated[Count, Field(ge=1024, le=998999)] | None = Field(
+        default=None, description="number of the projected coordinate system in the EPSG register, e.g. 25832"
+    )
+    crs_name: Text | None = Field(default=None, description="its name, e.g. ETRS89 / UTM zone 32N")
+    vertical_datum: Text | None = Field(default=None, description="of the height, e.g. DHHN2016")
+    eastings: Number | None = Field(default=None, description="m, of the vault's origin")
+    northings: Number | None = Field(default=None, description="m, of the vault's origin")
+    height: Number = Field(default=0.0, description="m over the vertical datum, of the vault's origin")
     rotation_deg: Annotated[Number, Field(ge=-360, le=360)] = Field(
-        0.0, description="from grid east to the vault's x axis, counter-clockwise seen from above"
+        default=0.0, description="from grid east to the vault's x axis, counter-clockwise seen from above"
     )
     true_north_deg: Annotated[Number, Field(ge=-360, le=360)] | None = Field(
-        None, description="from the vault's y axis to true north, counter-clockwise; without it, grid north is taken"
+        default=None,
+        description="from the vault's y axis to true north, counter-clockwise; without it, grid north is taken",
     )
     latitude_deg: Annotated[Number, Field(ge=-90, le=90)] | None = None
     longitude_deg: Annotated[Number, Field(ge=-180, le=180)] | None = None

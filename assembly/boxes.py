@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
@@ -64,12 +65,27 @@ def turned_rectangle(points: Floats, length: float, width: float) -> tuple[float
     return best
 
 
+def _cross(a: Floats, b: Floats) -> Floats:
+    """Return the cross product of two vectors (3,); numpy's own is written for arrays of them and ten times slower."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
+
+
 def _plan_axes(up: Floats) -> tuple[Floats, Floats]:
     """Return two unit axes (3,) across an upward axis."""
-    other = np.eye(3)[int(np.argmin(np.abs(up)))]
-    first = np.cross(up, other)
-    first /= np.linalg.norm(first)
-    return first, np.cross(up, first)
+    first = _cross(up, np.eye(3)[int(np.argmin(np.abs(up)))])
+    first /= math.sqrt(float(first @ first))
+    return first, _cross(up, first)
+
+
+@cache
+def _even_tilts() -> tuple[Floats, Floats]:
+    """Return upward axes (n, 3) spread evenly over the hemisphere, and two axes (n, 2, 3) across each."""
+    i = np.arange(_TILTS) + 0.5
+    z, turn = i / _TILTS, _GOLDEN * i
+    flat = np.sqrt(1.0 - z**2)
+    ups = np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
+    return ups, np.array([_plan_axes(up) for up in ups])
 
 
 def _tilted(points: Floats, up: Floats, room: Floats) -> Pose:
@@ -79,21 +95,18 @@ def _tilted(points: Floats, up: Floats, room: Floats) -> Pose:
     height = float(np.ptp(points @ up))
     filling, angle = turned_rectangle(plan, float(room[0]), float(room[1]))
     along = math.cos(angle) * x + math.sin(angle) * y
-    across = np.cross(up, along)
+    across = _cross(up, along)
     size = (float(np.ptp(points @ along)), float(np.ptp(points @ across)), height)
     return Pose((vector(along), vector(across), vector(up)), size, max(filling, height / float(room[2])))
 
 
 def _starts(points: Floats, room: Floats) -> Floats:
     """Return the most promising upward axes (k, 3) of an even set over the hemisphere, and the body's own axes."""
-    i = np.arange(_TILTS) + 0.5
-    z, turn = i / _TILTS, _GOLDEN * i
-    flat = np.sqrt(1.0 - z**2)
-    ups = np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
+    even, even_frames = _even_tilts()
     own = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
-    ups = np.concatenate([own, ups])
+    ups = np.concatenate([own, even])
+    frames = np.concatenate([[_plan_axes(up) for up in own], even_frames])
     phi = np.arange(_TURNS) * math.pi / _TURNS
-    frames = np.array([_plan_axes(up) for up in ups])
     along = np.cos(phi)[:, None] * frames[:, None, 0] + np.sin(phi)[:, None] * frames[:, None, 1]
     widths = np.ptp(points @ along.reshape(-1, 3).T, axis=0).reshape(len(ups), _TURNS)
     across = np.roll(widths, -_TURNS // 2, axis=1)
@@ -115,8 +128,8 @@ def best_pose(points: Floats, room: Vector, enough: float = 0.0) -> Pose:
         pose, step = _tilted(corners, start, limits), _FIRST_STEP
         while step > _LAST_STEP and pose.filling > enough:
             up, (x, y) = np.array(pose.axes[2]), _plan_axes(np.array(pose.axes[2]))
-            ways = [up + math.tan(step) * way for way in (x, y, -x, -y)]
-            nearer = min((_tilted(corners, w / np.linalg.norm(w), limits) for w in ways), key=lambda p: p.filling)
+            ways = [math.cos(step) * up + math.sin(step) * way for way in (x, y, -x, -y)]
+            nearer = min((_tilted(corners, way, limits) for way in ways), key=lambda p: p.filling)
             if nearer.filling < pose.filling - 1e-9:
                 pose = nearer
             else:

@@ -24,7 +24,7 @@ from assembly.steps import Phase, Plan, Step
 
 DownPhase: TypeAlias = Literal[
     "uncover", "prop", "open ridges", "lift off", "clear feet", "hang", "release geodesics", "pull edge planks",
-    "loosen", "lower", "take off beams", "take off geodesics", "pull studs", "unbolt", "passports",
+    "lower", "take off beams", "take off geodesics", "pull studs", "unbolt", "passports",
 ]  # fmt: skip
 
 DOWN_PHASES: tuple[DownPhase, ...] = get_args(DownPhase)
@@ -102,20 +102,14 @@ _WORDS: dict[DownPhase, tuple[tuple[str, ...], tuple[str, ...], str]] = {
         ),
         "No edge plank is left between the beams.",
     ),
-    "loosen": (
-        ("{spanners}", "marker"),
-        (
-            "Loosen the nuts of all studs by two turns, row by row from the top down, both sides at a time.",
-            "The beams turn about the studs and the sides move out: wait until they rest before the next row.",
-            "Nobody stands under or beside the shell; from outside only, within reach of the tag lines.",
-        ),
-        "Every nut is loose by two turns and none is off.",
-    ),
     "lower": (
-        ("crane or four chain hoists", "tag lines", "chocks"),
+        ("crane or four chain hoists", "{spanners}", "tag lines", "chocks"),
         (
-            "Take away the props, then let all slings down evenly and let the sides move out.",
+            "Loosen the nuts of all studs by two turns, from outside, row by row from the top down, none of them off.",
+            "The beams turn about the studs and the sides move out: wait until they rest before the next row.",
+            "Take away the props, nobody under the shell, then let all slings down evenly and let the sides move out.",
             "Watch the geodesics: each slides between the beams. Free one that binds before going on.",
+            "Do not leave the shell loosened in its slings: it lies flat before the end of the day.",
         ),
         "The shell lies flat on its lower beams; the slings are off.",
     ),
@@ -216,13 +210,14 @@ def _site_tasks(gridshell: Gridshell, kits: Mapping[str, Kit]) -> Iterator[_Task
         yield _Task("site.down.feet", "clear feet", "Clear the feet of the vault", "", lifts, feet)
 
 
-def _unlocking(shell: str, flat: Sequence[str], kit: Kit) -> Iterator[_Task]:
+def _unlocking(shell: str, flat: Sequence[str], kit: Kit, hoists: tuple[str, ...]) -> Iterator[_Task]:
     """Yield the release of a hanging shell: screws by pairs from the middle, inside first, edges, loose nuts, down.
 
-    Inside comes first because people stand under the shell for it: all other things still hold then.
+    Inside comes first because people stand under the shell for it: all other things still hold then. ``hoists`` is the
+    step that sets the hoists free.
     """
     hang = f"{shell}.down.hang"
-    yield _Task(hang, "hang", f"Hang shell {shell} at its hoist points", shell, (f"site.down.lift.{shell}",),
+    yield _Task(hang, "hang", f"Hang shell {shell} at its hoist points", shell, (f"site.down.lift.{shell}", *hoists),
                 (), (shell,), EVERYONE)  # fmt: skip
     before, i = hang, 0
     for side, screws in (("inside", kit.inside), ("outside", kit.outside)):
@@ -242,9 +237,8 @@ def _unlocking(shell: str, flat: Sequence[str], kit: Kit) -> Iterator[_Task]:
             task_id, out = f"{shell}.down.edge.{name}", _flat((*kit.edges[mark][::-1], mark) for mark in planks)
             yield _Task(task_id, "pull edge planks", title, shell, (before,), out, (), 2 * PAIR)
             before = task_id
-    loose, low = f"{shell}.down.loosen", f"{shell}.down.lower"
-    yield _Task(loose, "loosen", f"Loosen all stud bolts of shell {shell}", shell, (before,))
-    yield _Task(low, "lower", f"Lower shell {shell} flat", shell, (loose,), (), (shell,), EVERYONE)
+    title = f"Loosen the studs and lower shell {shell} flat"
+    yield _Task(f"{shell}.down.lower", "lower", title, shell, (before,), (), (shell,), EVERYONE)
 
 
 @dataclass(frozen=True)
@@ -338,6 +332,8 @@ def disassembly_of(gridshell: Gridshell, people: int, lift_limit: float) -> Plan
 
     ``marks`` are the parts that leave in a step, in the order in which they do. Cover off, all shells propped, ridges
     opened, each shell lifted off, released while it hangs, lowered flat, taken apart and measured (paper, section 5).
+    One set of hoists serves all shells, so that one hangs at a time.
+
     PlanError if the layers are woven in a circle, a part belongs to no joint, or the crew is empty.
     """
     if people < 1 or not lift_limit > 0.0:
@@ -348,10 +344,12 @@ def disassembly_of(gridshell: Gridshell, people: int, lift_limit: float) -> Plan
     crew, weights = Crew(people, lift_limit), piece_weights(gridshell)
     kits = {shell.mark: shell_kit(shell) for shell in gridshell.shells}
     chapters = [list(_site_tasks(gridshell, kits))]
+    hoists: tuple[str, ...] = ()
     for shell in gridshell.shells:
         runs, kit = flat_order(shell).runs, kits[shell.mark]
         flat = [unit for unit in _flat(runs) if unit in kit.inside]
-        chapters.append([*_unlocking(shell.mark, flat, kit), *_dismantling(shell, runs, kit)])
+        chapters.append([*_unlocking(shell.mark, flat, kit, hoists), *_dismantling(shell, runs, kit)])
+        hoists = (f"{shell.mark}.down.lower",)
     steps: list[Step] = []
     for tasks in chapters:
         for i, task in enumerate(tasks):

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from itertools import product
+from itertools import combinations, product
 from typing import TypeAlias
 
 import networkx as nx
@@ -50,7 +50,10 @@ def _once(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
         ("leaves", {part.mark for part in all_parts(gridshell)}, Counter(m for step in plan.steps for m in step.marks)),
         ("is taken off", beams, _moved(plan, "take off beams")),
         ("is measured", planks, _moved(plan, "passports")),
-        *(("has a step '" + phase + "'", shells, _moved(plan, phase)) for phase in ("lift off", "hang", "lower")),
+        *(
+            ("has a step '" + phase + "'", shells, _moved(plan, phase))
+            for phase in ("prop", "lift off", "hang", "lower")
+        ),
     )
     for verb, marks, found in wanted:
         for mark in sorted(marks | set(found)):
@@ -156,29 +159,35 @@ def _standing(plan: Plan, shell: Shell, leaves: dict[str, _Place]) -> Iterator[_
     feet = bolted | {part.mark for part in carrying}
     for mark, lift in product(sorted(feet & set(leaves)), lifts):
         yield f"{mark} carries {shell.mark}", lift, leaves[mark]
-    if not _steps(plan, "prop", shell.mark):
-        yield f"{shell.mark} is propped", ("", 0), ("", 1)
 
 
 def _hanging(plan: Plan, shell: Shell, leaves: dict[str, _Place]) -> Iterator[_Rule]:
     """Yield what keeps a shell in shape until it hangs, and what must be out or loose before it comes down flat."""
     covering = {mark for joint in shell.joints if joint.kind == "cover" for mark in joint.fasteners}
-    chain = [_steps(plan, phase, shell.mark)[:1] for phase in ("lift off", "hang", "loosen", "lower")]
+    chain = [_steps(plan, phase, shell.mark)[:1] for phase in ("lift off", "hang", "lower")]
     if not all(chain):
         return
-    lift, hang, loosen, lower = ((step[0].id, -1) for step in chain)
+    lift, hang, lower = ((step[0].id, -1) for step in chain)
     yield f"{shell.mark} is off its feet before it hangs", lift, hang
-    yield f"{shell.mark} hangs before its nuts are loosened", hang, loosen
-    yield f"{shell.mark} is loose before it is lowered", loosen, lower
+    yield f"{shell.mark} hangs before it is lowered", hang, lower
     bracing = {screw.mark for screw in shell.screws} - covering
     bracing |= {plank.mark for plank in shell.planks if plank.family == "E"} | {strap.mark for strap in shell.straps}
     for mark in sorted(bracing & set(leaves)):
         yield f"{mark} keeps the shape of {shell.mark} until it hangs", hang, leaves[mark]
-        yield f"{mark} must be out before the nodes turn", leaves[mark], loosen
+        yield f"{mark} must be out before the nodes turn", leaves[mark], lower
     for mark in sorted({stud.mark for stud in shell.studs} & set(leaves)):
         yield f"{mark} holds {shell.mark} until it lies flat", lower, leaves[mark]
     for step in (step for beam in shell.beams for step in _steps(plan, "take off beams", beam.mark)):
         yield f"beams carry {shell.mark} until it lies flat", lower, (step.id, 0)
+
+
+def _one_by_one(plan: Plan, forced: dict[str, set[str]]) -> Iterator[str]:
+    """Yield pairs of shells that may hang at the same time: one set of hoists serves all."""
+    ends = {mark: step.id for step in plan.steps if _phase(step) == "lower" for mark in step.assemblies}
+    hung = {mark: step.id for step in plan.steps if _phase(step) == "hang" for mark in step.assemblies}
+    for a, b in combinations(sorted(set(ends) & set(hung)), 2):
+        if ends[a] not in forced[hung[b]] and ends[b] not in forced[hung[a]]:
+            yield f"{a} and {b}: nothing forces one to be lowered before the other hangs, but the hoists serve one"
 
 
 def _measured(plan: Plan, leaves: dict[str, _Place]) -> Iterator[_Rule]:
@@ -191,11 +200,12 @@ def check_disassembly(plan: Plan, gridshell: Gridshell) -> list[str]:
 
     Every part leaves exactly once; nothing is taken from under what lies on it or before its fasteners are out; what
     holds a shell (cover off, ridges, foot bolts, screws, edge planks, studs) goes only when props, slings or the floor
-    hold it instead, forced by predecessors; every plank is measured after it has left.
+    hold it instead, forced by predecessors; one shell hangs at a time; every plank is measured
+    after it has left.
     """
     leaves, lying = _places(plan, gridshell)
     forced = _forced(plan)
-    problems = [*_numbering(plan), *_once(plan, gridshell)]
+    problems = [*_numbering(plan), *_once(plan, gridshell), *_one_by_one(plan, forced)]
     rules = [*_fastened(gridshell, leaves, lying), *_covered(gridshell, lying), *_measured(plan, leaves)]
     for shell in gridshell.shells:
         rules += [*_standing(plan, shell, leaves), *_hanging(plan, shell, leaves)]

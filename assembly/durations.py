@@ -45,7 +45,8 @@ _PLANKS = {"A1": "plank", "A2": "plank", "G": "geodesic", "E": "edge_plank"}
 _LONG = (Plank, Mullion, Strip, ClampingBar)
 # Bolts of the other phases stay loose until the shell is tightened.
 _TIGHTENED_AT_ONCE = ("prefabricate", "stand", "ridges")
-_SHELL_BOLTS: tuple[JointKind, ...] = ("AA", "AG", "boundary", "ridge")
+# The joints whose bolts are gone over, tightening them or loosening them, without being put in or taken out.
+_SHELL_BOLTS: dict[str, tuple[JointKind, ...]] = {"tighten": ("AA", "AG", "boundary", "ridge"), "lower": ("AA",)}
 _ONCE = {"hoist": "hoist", "stand": "stand", "lift off": "stand", "lower": "lower", "prop": "prop"}
 
 
@@ -100,9 +101,9 @@ def _work_with(known: _Lengths, step: Step) -> StepWork:
     done["measure"] += len(measured)
     if phase in _TIGHTENED_AT_ONCE:
         done["tighten"] += handled["bolt"]
-    if phase in ("tighten", "loosen"):
-        bolts = known.bolts[step.shell]
-        done["tighten"] += sum(bolts.get(kind, 0) for kind in (_SHELL_BOLTS if phase == "tighten" else ("AA",)))
+    if phase in _SHELL_BOLTS:
+        bolts = known.bolts.get(step.shell, {})
+        done["tighten"] += sum(bolts.get(kind, 0) for kind in _SHELL_BOLTS[phase])
     if phase in _ONCE:
         done[_ONCE[phase]] += 1
     handled["ridge"] += phase in ("ridges", "open ridges")

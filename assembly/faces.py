@@ -1,4 +1,4 @@
-"""The faces of a gridshell for pictures: quadrilaterals of planks, studs and feet in vault coordinates."""
+"""The faces of a gridshell for pictures: quadrilaterals of timber, steel plates and concrete in vault coordinates."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from aag_cad.parts.mesh import frame_matrix, shell_mesh
-from aag_cad.parts.model import Gridshell, Part, Shell, Stud
+from aag_cad.parts.model import Footing, Gridshell, Part, Shell, Stud
 from aag_cad.parts.triangles import regular_polygon
 from aag_cad.units import Floats
 from assembly.pieces import plank_rings
@@ -16,6 +16,7 @@ COLOURS = {
     "A2": (208, 94, 54),
     "G": (236, 194, 98),
     "E": (156, 116, 72),
+    "C": (172, 169, 162),
     "": (92, 86, 80),
 }
 LEAST_SPACING = 110.0
@@ -69,15 +70,23 @@ def _shell_faces(shell: Shell, spacing: float) -> Iterator[tuple[Floats, str]]:
         yield placed_points(tube_faces(plank_rings(plank, spacing)), shell), plank.family
     for stud in shell.studs:
         yield placed_points(_stud_faces(stud), shell), ""
-    feet: tuple[Part, ...] = (*shell.shoes, *shell.footings)
-    for part in feet:
+    fittings: tuple[Part, ...] = (*shell.shoes, *shell.straps, *shell.footings)
+    for part in fittings:
         mesh = shell_mesh(part)
-        yield placed_points(mesh.vertices, shell)[mesh.faces[:, [0, 1, 2, 2]]], ""
+        family = "C" if isinstance(part, Footing) else ""
+        yield placed_points(mesh.vertices, shell)[mesh.faces[:, [0, 1, 2, 2]]], family
+
+
+def _blade_faces(gridshell: Gridshell) -> Iterator[tuple[Floats, str]]:
+    for blade in gridshell.blades:
+        mesh = shell_mesh(blade)
+        yield mesh.vertices[mesh.faces[:, [0, 1, 2, 2]]], ""
 
 
 def gridshell_faces(gridshell: Gridshell) -> Faces:
-    """Return the faces of all planks, studs and feet in vault coordinates."""
+    """Return the faces of timber, steel plates and concrete in vault coordinates; the cover would hide them all."""
     spacing = picture_spacing(gridshell)
     listed = [item for shell in gridshell.shells for item in _shell_faces(shell, spacing)]
+    listed += _blade_faces(gridshell)
     colours = [np.tile(np.array(COLOURS[family], dtype=float), (len(faces), 1)) for faces, family in listed]
     return Faces(np.concatenate([faces for faces, _ in listed]), np.concatenate(colours))

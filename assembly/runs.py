@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -73,6 +74,21 @@ class Divisible:
             *self.shell.studs, *self.shell.blocks, *self.shell.bolts, *self.shell.screws, *self.shell.straps,
         )  # fmt: skip
         return {part.mark: part for part in parts}
+
+    @cached_property
+    def masses(self) -> dict[str, float]:
+        """Masses of the small parts by mark, kg."""
+        return {mark: mass(part, self.timber) for mark, part in self.small.items()}
+
+    @cached_property
+    def fixed_on_site(self) -> frozenset[str]:
+        """Small parts of the feet, the cover and the footings: fixed on site, cut or not."""
+        return frozenset(
+            mark
+            for joint in self.shell.joints
+            if joint.kind not in _CARRIED_JOINTS
+            for mark in (joint.mark, *joint.fasteners)
+        )
 
     @cached_property
     def small_corners(self) -> dict[str, Floats]:
@@ -148,7 +164,7 @@ def _intervals(item: Divisible, track: Track, start: int, end: int) -> Iterator[
     first = item.planks[track.planks[0]]
     bounds = [0.0, *sorted(splices), first.blank.length]
     bays, owned = grid.bays(start, end), grid.owned(start, end)
-    for i, (low, high) in enumerate(zip(bounds, bounds[1:], strict=False)):
+    for i, (low, high) in enumerate(pairwise(bounds)):
         if track.edge:
             inside = any(c.line in owned for c in track.crossings if low < c.station < high)
         else:
@@ -260,7 +276,7 @@ def run_between(item: Divisible, start: int, end: int) -> Run:
             else:
                 pieces.append(piece)
     for mark in small:
-        masses.append(mass(item.small[mark], item.timber))
+        masses.append(item.masses[mark])
         centres.append(part_point(item.small[mark]))
         corners += [item.small_corners[mark]] if mark in item.small_corners else []
     for splice in blocks:

@@ -247,7 +247,8 @@ def _foot_sections(gridshell: Gridshell, step: Step) -> tuple[str, ...]:
     if step.phase not in ("feet", "stand"):
         return ()
     shell = next((shell for shell in gridshell.shells if shell.mark in step.assemblies), gridshell.shells[0])
-    return tuple(foot_section_svg(shell, shoe) for shoe in shell.shoes[:2])
+    shoes = shell.shoes[:2]
+    return tuple(foot_section_svg(shell, shoe, named=shoe is shoes[-1]) for shoe in shoes)
 
 
 def step_pictures(sheets: Sheets, step: Step, stood: Sequence[str] = ()) -> tuple[str, ...]:

@@ -17,10 +17,10 @@ _AXIS = 200.0
 _WORDS = 24.0
 
 
-def callout(x: float, y: float, to_x: float, to_y: float, words: str) -> Iterator[str]:
+def callout(x: float, y: float, to_x: float, to_y: float, words: str, size: float = _WORDS) -> Iterator[str]:
     """Yield a line from a place on a part to words at its right."""
     yield line(np.array([(to_x, to_y), (x, y)]), _THIN)
-    yield group([circle((to_x, to_y), 3.0), text(words, x + 8.0, y, _WORDS, "start")], _INK)
+    yield group([circle((to_x, to_y), 3.0), text(words, x + 8.0, y, size, "start")], _INK)
 
 
 def _beam(middle: float, section: CrossSection, gap: float) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 
 from aag_cad.units import Vector
 from assembly.boxes import Pose, best_pose
@@ -107,9 +108,9 @@ def segment_ends(item: Divisible, stops: tuple[int, ...]) -> list[tuple[int, int
     grid = item.tracks
     if grid.ring:
         around = (*stops, stops[0] + 2 * len(grid.lines)) if stops else (2, 2 + 2 * len(grid.lines))
-        return list(zip(around, around[1:], strict=False))
+        return list(pairwise(around))
     chain = (grid.stops()[0], *stops, grid.stops()[-1])
-    return list(zip(chain, chain[1:], strict=False))
+    return list(pairwise(chain))
 
 
 def smallest_runs(item: Divisible) -> list[tuple[int, int]]:
@@ -121,7 +122,7 @@ def smallest_runs(item: Divisible) -> list[tuple[int, int]]:
 
 
 def least_widths(run: Run, limits: Limits) -> tuple[float | None, float | None]:
-    """Return the least width and the least height, mm, that alone would make a run fit; None if four times is too little.
+    """Return the least width and the least height, mm, that alone make a run fit; None if four times is too little.
 
     Each by halving, to an eightieth of the range in the worst case; the width found is that of a pose and so is enough.
     """

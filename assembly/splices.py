@@ -9,6 +9,7 @@ grain. That they are kept does not prove the splice: its forces come from the st
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 from aag_cad.mechanics.fastener_spacing import bolt_distances
@@ -65,7 +66,12 @@ def _obstacles(shell: Shell) -> dict[str, float]:
 
 
 def _beam_splice(
-    shell: Shell, track: Track, crossing: Crossing, line: str, planks: dict[str, Plank], blocks: dict[str, CouplingBlock]
+    shell: Shell,
+    track: Track,
+    crossing: Crossing,
+    line: str,
+    planks: dict[str, Plank],
+    blocks: dict[str, CouplingBlock],
 ) -> Splice:
     bolts = {bolt.mark: bolt for bolt in shell.bolts}
     joint = next(joint for joint in shell.joints if joint.mark == crossing.joint)
@@ -139,7 +145,7 @@ def _edge_splice(plank: Plank, line: str, span: tuple[float, float], diameter: f
     """Return the splice of an edge plank between two of its joints, in the widest gap between holes."""
     low, high = min(span), max(span)
     stations = sorted({low, high, *(hole.station for hole in plank.blank.holes if low < hole.station < high)})
-    start, end = max(zip(stations, stations[1:], strict=False), key=lambda pair: (round(pair[1] - pair[0], 3), -pair[0]))
+    start, end = max(pairwise(stations), key=lambda pair: (round(pair[1] - pair[0], 3), -pair[0]))
     cut = (start + end) / 2.0
     clear, limits = _clear(plank.blank.holes, cut), bolt_distances(diameter, 0.0)
     required = limits.a3_t + limits.a1

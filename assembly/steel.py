@@ -11,7 +11,7 @@ from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Blade, Bolt, FlatBar, FoldedPlate, Frame, Gridshell, Joint, Plank, Shell, Shoe, Strap
 from aag_cad.parts.plates import plate_rings
 from aag_cad.units import Floats, vector
-from assembly.drawing import Style, line, path, polygon, svg
+from assembly.drawing import CHARACTER, Style, line, path, polygon, svg
 from assembly.pieces import Flat
 from assembly.sections import callout
 
@@ -21,9 +21,10 @@ _BOLT = Style("#222", "#fff", 0.6)
 _CONCRETE = Style("#d0d0d0", "#000", 1.5)
 _GROUND = Style("none", "#000", 2.5, "14 8")
 _UNIT = 1.6
-_WORDS = 380.0
+_SIZE = 34.0
+_WORDS = 22.0 * CHARACTER * _SIZE
 _DEPTH = 140.0
-_ALONG = 230.0
+_ALONG = 180.0
 _ROOM = 75.0
 _NEAR = np.eye(4)
 
@@ -89,12 +90,13 @@ def _sheet(items: Sequence[str], points: Floats, words: Sequence[tuple[Floats, s
     low, high = points.min(axis=0) - 12.0, points.max(axis=0) + 12.0
     moved = f'<g transform="translate({-low[0]:.1f} {-low[1]:.1f})">{"".join(items)}</g>'
     width, height = (high - low).tolist()
+    reach = width + (_WORDS if words else 0.0)
     order = sorted(range(len(words)), key=lambda i: float(words[i][0][1]))
     told: list[str] = []
     for place, i in enumerate(order):
         (x, y), text = (words[i][0] - low).tolist(), words[i][1]
-        told += callout(width + 14.0, height * (place + 0.5) / len(words), x, y, text)
-    return svg(width + _WORDS, height, [moved, *told])
+        told += callout(width + 14.0, height * (place + 0.5) / len(words), x, y, text, _SIZE)
+    return svg(reach, height, [moved, *told])
 
 
 def _members(shell: Shell, joint: Joint) -> list[Plank]:
@@ -102,8 +104,11 @@ def _members(shell: Shell, joint: Joint) -> list[Plank]:
     return [planks[mark] for mark in joint.members if mark in planks]
 
 
-def foot_section_svg(shell: Shell, shoe: Shoe) -> str:
-    """Return the section through a foot across the edge of the shell, outside at the right, at 1 : 6."""
+def foot_section_svg(shell: Shell, shoe: Shoe, named: bool) -> str:
+    """Return the section through a foot across the edge of the shell, outside at the right, at 1 : 6.
+
+    ``named`` says whether words name its parts.
+    """
     joint = next(joint for joint in shell.joints if joint.mark == shoe.mark)
     stands = next(joint for joint in shell.joints if joint.kind == "footing" and shoe.mark in joint.members)
     rod = next(rod for rod in shell.rods if rod.mark in stands.fasteners)
@@ -127,16 +132,11 @@ def foot_section_svg(shell: Shell, shoe: Shoe) -> str:
     words = [
         (timber[0].mean(axis=0), "G geodesic"),
         (timber[1].mean(axis=0), "E bottom plank"),
-        (upright, f"F shoe, {shoe.plate.thickness:g} mm, outside" if _is_outside(shoe) else "F shoe, inside"),
+        (upright, f"F shoe, {shoe.plate.thickness:g} mm"),
         (flat(np.array([rod.frame.origin]))[0] - [0.0, _UNIT * rod.nuts[1]], f"M{rod.diameter:g} rod, two nuts"),
         (block[1:3].mean(axis=0), "C concrete block"),
     ]
-    return _sheet(items, np.concatenate([block, *timber, plate]), words)
-
-
-def _is_outside(shoe: Shoe) -> bool:
-    """Return whether the upright of a shoe lies on the outer face of its planks."""
-    return shoe.plate.line[1][0] > 0.0
+    return _sheet(items, np.concatenate([block, *timber, plate]), words if named else [])
 
 
 def strap_section_svg(shell: Shell, strap: Strap) -> str:

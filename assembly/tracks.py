@@ -8,6 +8,7 @@ their crossings with it, and only the geodesic itself changes sides.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -109,7 +110,7 @@ def _track(
 ) -> Track:
     listed, n = list(_listed(member, joints, lines)), len(lines)
     steps = []
-    for (place, line), (_, following) in zip(listed, listed[1:], strict=False):
+    for (place, line), (_, following) in pairwise(listed):
         step = (following - line + n // 2) % n - n // 2
         if abs(step) != 1:
             raise PlanError(
@@ -147,9 +148,5 @@ def tracks(shell: Shell) -> Tracks:
     if lone:
         raise PlanError(f"{', '.join(lone)}: crosses no geodesic, so no segment can hold it; carry the shell whole")
     ends = {1, len(lines)}
-    ring = any(
-        {a.line, b.line} == ends
-        for track in members
-        for a, b in zip(track.crossings, track.crossings[1:], strict=False)
-    )
+    ring = any({a.line, b.line} == ends for track in members for a, b in pairwise(track.crossings))
     return Tracks(tuple(lines), ring, members)

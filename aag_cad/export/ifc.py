@@ -111,9 +111,7 @@ def _write_sets(
     write_serial_numbers(model, planks, elements, groups)
 
 
-def ifc_model(
-    gridshell: Gridshell, steps: Sequence[Step] | None = None, options: IfcOptions | None = None
-) -> IfcModel:
+def ifc_model(gridshell: Gridshell, steps: Sequence[Step] | None = None, options: IfcOptions | None = None) -> IfcModel:
     """Return the gridshell as an open IFC file; the steps of a plan become a work schedule.
 
     IFC2X3 has no task times: there the steps are only named in the set ``AAG_Assembly``. DesignError if the options do

@@ -1,67 +1,86 @@
-"""The assembly plan in IFC: a work plan with a schedule of one task for each step, its dates and what it builds."""
+"""The assembly plan in IFC: a work plan with a schedule of one task for each step, its times and what it builds."""
 
 from collections.abc import Mapping, Sequence
-from datetime import date, timedelta
+from datetime import date
 
+from aag_cad.design_sections import Minutes
 from aag_cad.errors import DesignError
 from aag_cad.export.ifc_base import TIMESTAMP, Entity, IfcModel, declare, rooted
+from aag_cad.export.ifc_schemas import IfcOptions
 from aag_cad.export.ifc_sets import Property, write_property_set
-from aag_cad.export.ifc_tasks import Timing, timings
+from aag_cad.export.ifc_tasks import Timing, WorkingTime, timings
 from aag_cad.parts.model import Gridshell
-from assembly.steps import Step
+from assembly.durations import step_minutes
+from assembly.schedule import Schedule, ScheduledStep, schedule_of
+from assembly.steps import Plan, Step
 
-_BEGIN, _END = "T09:00:00", "T17:00:00"
+# A Monday: a file must not change with the day on which it is written.
+_NO_DATE = "2000-01-03"
+_HOURS_PER_DAY = 8.0
+_DAYS_PER_WEEK = 5
 
 
-def _first_day(text: str) -> date:
+def scheduled(gridshell: Gridshell, steps: Sequence[Step], options: IfcOptions) -> tuple[dict[str, Timing], Schedule]:
+    """Return the timing of each step by its id and the schedule for the crew of the options.
+
+    Without a crew the times are the estimates of ``Minutes``, and there are as many people as the largest step takes.
+    PlanError if the steps are no order or take more people than there are.
+    """
+    crew, plan = options.crew, Plan(gridshell.name, tuple(steps))
+    minutes = step_minutes(plan, gridshell, crew.minutes if crew else Minutes.model_validate({}))
+    people = crew.people if crew else max((step.crew for step in steps), default=1)
+    hours = crew.hours_per_day if crew else _HOURS_PER_DAY
+    return timings(plan, minutes), schedule_of(plan, minutes, people, hours)
+
+
+def _working_time(schedule: Schedule, options: IfcOptions) -> WorkingTime:
+    text = (options.crew.start if options.crew else None) or _NO_DATE
+    days = options.crew.days_per_week if options.crew else _DAYS_PER_WEEK
     try:
-        return date.fromisoformat(text)
+        return WorkingTime(date.fromisoformat(text), schedule.day_minutes, days)
     except ValueError as error:
-        raise DesignError(f"ifc start: {text!r} is not a date; write YYYY-MM-DD") from error
+        raise DesignError(f"crew.start: {text!r} is not a date; write YYYY-MM-DD") from error
 
 
-def _task_time(model: IfcModel, timing: Timing, first: date) -> Entity:
-    """Write the times of a task; each day counts, as no calendar says otherwise."""
+def _span(minutes: int) -> str:
+    return f"PT{minutes}M"
 
-    def at(day: int, hour: str) -> str:
-        return f"{first + timedelta(days=day)}{hour}"
 
-    start, finish = at(timing.early_start, _BEGIN), at(timing.early_finish, _END)
+def _task_time(model: IfcModel, timing: Timing, step: ScheduledStep, work: WorkingTime) -> Entity:
+    """Write the times of a task: as scheduled for the crew, and the earliest and latest if people were no limit."""
     return model.file.create_entity(
-        "IfcTaskTime", DataOrigin="PREDICTED", DurationType="ELAPSEDTIME", ScheduleDuration=f"P{timing.days}D",
-        ScheduleStart=start, ScheduleFinish=finish, EarlyStart=start, EarlyFinish=finish,
-        LateStart=at(timing.late_start, _BEGIN), LateFinish=at(timing.late_finish, _END),
-        FreeFloat=f"P{timing.free}D", TotalFloat=f"P{timing.total}D", IsCritical=timing.critical,
+        "IfcTaskTime", DataOrigin="PREDICTED", DurationType="WORKTIME", ScheduleDuration=_span(timing.minutes),
+        ScheduleStart=work.start(step.start_minute), ScheduleFinish=work.finish(step.end_minute),
+        EarlyStart=work.start(timing.early_start), EarlyFinish=work.finish(timing.early_finish),
+        LateStart=work.start(timing.late_start), LateFinish=work.finish(timing.late_finish),
+        FreeFloat=_span(timing.free), TotalFloat=_span(timing.total), IsCritical=timing.critical,
     )  # fmt: skip
 
 
-def _task(model: IfcModel, step: Step, timing: Timing, first: date) -> Entity:
+def _task(model: IfcModel, step: Step, time: Entity) -> Entity:
     return rooted(
         model, "IfcTask", ("task", step.id), step.title, " ".join(step.instructions) or None, step.phase, step.id,
-        IsMilestone=False, TaskTime=_task_time(model, timing, first), PredefinedType="INSTALLATION",
+        IsMilestone=False, TaskTime=time, PredefinedType="INSTALLATION",
     )  # fmt: skip
 
 
 def _write_step(
-    model: IfcModel, step: Step, timing: Timing, tasks: Mapping[str, Entity], elements: Mapping[str, Entity]
+    model: IfcModel, step: Step, minutes: int, tasks: Mapping[str, Entity], elements: Mapping[str, Entity]
 ) -> None:
     """Write what a step works on, what it adds, what must be finished before it, and the people it takes."""
     task = tasks[step.id]
     for before in step.predecessors:
-        rooted(
-            model, "IfcRelSequence", ("sequence", before, step.id), None, None, tasks[before], task, None,
-            "FINISH_START",
-        )  # fmt: skip
+        names = ("sequence", before, step.id)
+        rooted(model, "IfcRelSequence", names, None, None, tasks[before], task, None, "FINISH_START")
     if worked_on := [elements[mark] for mark in dict.fromkeys((*step.marks, *step.assemblies))]:
         rooted(model, "IfcRelAssignsToProcess", ("worked on", step.id), None, None, worked_on, None, task)
     for mark in dict.fromkeys(step.marks):
-        rooted(
-            model, "IfcRelAssignsToProduct", ("built", step.id, mark), None, None, [task], None, elements[mark]
-        )  # fmt: skip
+        names = ("built", step.id, mark)
+        rooted(model, "IfcRelAssignsToProduct", names, None, None, [task], None, elements[mark])
     rows: list[Property] = [
         ("StepNumber", "IfcInteger", step.number),
         ("Crew", "IfcInteger", step.crew),
-        ("PersonHours", "IfcReal", timing.person_hours),
+        ("PersonHours", "IfcReal", round(step.crew * minutes / 60.0, 3)),
     ]
     if step.hold:
         rows.append(("Hold", "IfcText", step.hold))
@@ -73,20 +92,26 @@ def write_schedule(
 ) -> None:
     """Write the steps in their order; ``elements`` holds parts and assemblies by mark.
 
-    DesignError if the first day of the options is no date.
+    DesignError if the first day of work is no date, PlanError if the steps are no order.
     """
-    first, found = _first_day(model.options.start), timings(steps)
-    start = f"{first}{_BEGIN}"
-    last = first + timedelta(days=max((timing.early_finish for timing in found.values()), default=0))
-    dates = {"CreationDate": TIMESTAMP, "StartTime": start, "FinishTime": f"{last}{_END}", "PredefinedType": "PLANNED"}
+    found, schedule = scheduled(gridshell, steps, model.options)
+    work = _working_time(schedule, model.options)
+    dates = {
+        "CreationDate": TIMESTAMP,
+        "StartTime": work.start(0),
+        "FinishTime": work.finish(schedule.makespan),
+        "PredefinedType": "PLANNED",
+    }
     plan = rooted(model, "IfcWorkPlan", ("plan",), f"Assembly of {gridshell.name}", **dates)
-    schedule = rooted(model, "IfcWorkSchedule", ("schedule",), f"Steps of {gridshell.name}", **dates)
+    control = rooted(model, "IfcWorkSchedule", ("schedule",), f"Steps of {gridshell.name}", **dates)
     declare(model, "plan", [plan])
-    rooted(model, "IfcRelAggregates", ("aggregates", "plan"), None, None, plan, [schedule])
-    tasks = {step.id: _task(model, step, found[step.id], first) for step in steps}
+    rooted(model, "IfcRelAggregates", ("aggregates", "plan"), None, None, plan, [control])
+    tasks = {
+        step.id: _task(model, step, _task_time(model, found[step.id], when, work))
+        for step, when in zip(steps, schedule.steps, strict=True)
+    }
     if tasks:
-        rooted(
-            model, "IfcRelAssignsToControl", ("scheduled",), None, None, list(tasks.values()), None, schedule
-        )  # fmt: skip
+        related = list(tasks.values())
+        rooted(model, "IfcRelAssignsToControl", ("scheduled",), None, None, related, None, control)
     for step in steps:
-        _write_step(model, step, found[step.id], tasks, elements)
+        _write_step(model, step, found[step.id].minutes, tasks, elements)

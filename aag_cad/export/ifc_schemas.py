@@ -6,7 +6,7 @@ from typing import Literal, TypeAlias, get_args
 
 import ifcopenshell
 
-from aag_cad.design_sections import Site
+from aag_cad.design_sections import Crew, Site
 from aag_cad.errors import DesignError
 from aag_cad.export.ifc_kinds import IfcKind
 
@@ -27,10 +27,10 @@ _VIEWS: dict[tuple[IfcSchema, IfcGeometry], str] = {
 
 @dataclass(frozen=True)
 class IfcOptions:
-    """How an IFC file is written: schema, bodies of planks, where it stands, who made it, the first day of work.
+    """How an IFC file is written: schema, bodies of planks, where it stands, who made it, who puts it together.
 
-    ``geometry`` "brep" gives planks and bars B-spline faces in place of triangles. ``start`` is a date (YYYY-MM-DD); a
-    file must not change with the day on which it is written, so the default is no real date.
+    ``geometry`` "brep" gives planks and bars B-spline faces in place of triangles. ``crew`` gives the people, their
+    hours, the minutes that their work takes and the first day.
     """
 
     schema: IfcSchema = "IFC4"
@@ -38,7 +38,7 @@ class IfcOptions:
     site: Site | None = None
     author: str = ""
     organisation: str = ""
-    start: str = "2000-01-01"
+    crew: Crew | None = None
 
 
 def require_known(options: IfcOptions) -> None:

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from aag_cad.export.ifc_base import Entity, IfcModel
 from aag_cad.export.ifc_kinds import IFC_KINDS
 from aag_cad.export.ifc_schemas import IfcSchema
@@ -10,7 +12,7 @@ from aag_cad.parts.model import Bolt, ClampingBar, Footing, Mullion, Part, Plank
 from aag_cad.parts.products import product_name
 from aag_cad.parts.quantities import density, gross_volume, mass, section_area, sizes, volume
 from aag_cad.parts.strips import flat_pattern
-from aag_cad.units import MM2_PER_M2, MM3_PER_M3
+from aag_cad.units import MM2_PER_M2, MM3_PER_M3, Floats
 
 _COMMON = {
     "IfcMember": "Pset_MemberCommon",
@@ -78,16 +80,14 @@ def _bulk(part: Part, timber: Timber) -> list[Quantity]:
 def _perimeter(part: Part) -> float:
     if isinstance(part, Strip):
         pattern = flat_pattern(part)
-        cuts = sum(_polyline_length(cut) for cut in (pattern.lower, pattern.upper))
+        cuts = _polyline_length(pattern.lower) + _polyline_length(pattern.upper)
         return pattern.left_length + pattern.right_length + cuts
     length, width, _thickness = sizes(part)
     return 2.0 * (length + width)
 
 
-def _polyline_length(points: Sequence[Sequence[float]]) -> float:
-    return sum(
-        ((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2) ** 0.5 for a, b in zip(points[:-1], points[1:], strict=True)
-    )
+def _polyline_length(points: Floats) -> float:
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
 def base_quantities(part: Part, timber: Timber) -> list[Quantity]:

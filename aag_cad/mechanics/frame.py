@@ -60,8 +60,8 @@ def mechanism_error(system: FrameSystem, unknowns: Floats) -> FrameError:
     way = "turn about" if turning else "move along"
     x, y, z = (f"{value:.3g}" if abs(value) > 1e-3 else "0" for value in along)
     return FrameError(
-        f"{system.model.nodes[place].mark}: the frame is a mechanism; this node is free to {way} ({x}, {y}, {z}); hold it, "
-        "brace it or take out a hinge"
+        f"{system.model.nodes[place].mark}: the frame is a mechanism; this node is free to {way} ({x}, {y}, {z}); "
+        "hold it, brace it or take out a hinge"
     )
 
 

@@ -46,9 +46,8 @@ _PASSES = 20
 FREE_END = 0.75
 # The bars are a little longer than the geodesic under them.
 _EARLY = 0.95
-# A block on the geodesic: length along it, its screws from the middle, and from the plank's end to its middle (12 d).
-_STAND_OFF_LENGTH = 90.0
-_STAND_OFF_SCREWS = 12.0
+# A block on the geodesic: its length, and from the plank's end to its screw (12 d).
+_STAND_OFF_LENGTH = 100.0
 _STAND_OFF_END = 75.0
 _STEP = 10.0
 
@@ -287,20 +286,13 @@ def _stand_offs(
     return taken[len(crossings) :]
 
 
-def _stand_off_screws(
-    design: Design, mark: Mark, block: CouplingBlock, plank: str
-) -> tuple[list[Screw], list[Drilling]]:
-    """Return the two screws from inside through a geodesic into a block on it, and the drillings of its plank."""
-    joints, half = design.joints, design.timber.thickness / 2.0
-    up, across = np.array(block.frame.y), np.array(block.frame.z)
+def _stand_off_screw(design: Design, mark: Mark, block: CouplingBlock, plank: str) -> tuple[Screw, Drilling]:
+    """Return the screw from inside through a geodesic into a block on it, and the drilling of its plank."""
+    joints, up = design.joints, np.array(block.frame.y)
     middle = np.array(block.frame.origin) - design.layer_offset * up
-    screws, drillings = [], []
-    for number, sign in ((2, -1.0), (3, 1.0)):
-        at = middle + sign * _STAND_OFF_SCREWS * across
-        frame = axis_frame(at - half * up, up, across)
-        screws.append(wood_screw(f"{mark}-W{number}", joints.screw_diameter, joints.screw_length, frame))
-        drillings.append(Drilling(plank, vector(at), vector(up), joints.screw_hole, "screw", str(mark)))
-    return screws, drillings
+    frame = axis_frame(middle - design.timber.thickness / 2.0 * up, up, np.array(block.frame.x))
+    screw = wood_screw(f"{mark}-W2", joints.screw_diameter, joints.screw_length, frame)
+    return screw, Drilling(plank, vector(middle), vector(up), joints.screw_hole, "screw", str(mark))
 
 
 def _fixed_at(design: Design, line: _Line, mark: Mark, station: float, at: Joint | None) -> FacadePieces:
@@ -314,8 +306,8 @@ def _fixed_at(design: Design, line: _Line, mark: Mark, station: float, at: Joint
     screws, drillings = [screw], list[Drilling]()
     if at is None:
         blocks = (_stand_off(design, str(mark), line.item, station),)
-        more, drillings = _stand_off_screws(design, mark, blocks[0], line.plank.mark)
-        screws += more
+        inner, drilling = _stand_off_screw(design, mark, blocks[0], line.plank.mark)
+        screws, drillings = [screw, inner], [drilling]
         members = (*bars, line.plank.mark, blocks[0].mark)
     else:
         members = (*bars, next(m for m in at.members if parse_mark(m).family == "K"))

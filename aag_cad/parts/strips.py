@@ -23,6 +23,8 @@ _NARROW = 1e-6
 _SEARCH = 129
 _ALONG_CUT = 33
 _NEWTON_STEPS = 12
+_STILL = 1e-8
+_FAR = 15.0
 
 # How far points (n, 3) lie inside a limit, mm, (n,).
 Limit: TypeAlias = Callable[[Floats], Floats]
@@ -294,28 +296,37 @@ def strip_depth(strip: Strip, points: Floats) -> Floats:
     """Return how deep points (n, 3) near a strip lie inside its sheet, mm, (n,); negative outside.
 
     The ruling plane (ruling and normal) that holds a point is found by Newton's method; there the depth is measured to
-    the two faces, and in the flat pattern to the edges and cuts.
+    the two faces, and in the flat pattern to the edges and cuts. Points that are far off are so by rough figures.
     """
     sheet = sheet_of(strip)
-    u = np.linspace(0.0, 1.0, len(strip.left.stations))
     middles = (strip.left.points + strip.right.points) / 2.0
-    u = u[np.argmin(np.linalg.norm(points[:, None] - middles[None], axis=2), axis=1)]
+    nearest = np.argmin((middles**2).sum(axis=1) - 2.0 * points @ middles.T, axis=1)
+    height = dot(points - strip.left.points[nearest], strip.left.normals[nearest])
+    depth = strip.thickness / 2.0 - np.abs(height)
+    near = depth > -_FAR
+    if near.any():
+        depth[near] = _near_depth(sheet, points[near], nearest[near] / (len(middles) - 1.0))
+    return depth
+
+
+def _near_depth(sheet: Sheet, points: Floats, guess: Floats) -> Floats:
+    """Return how deep points (n, 3) lie inside the sheet, (n,), from guesses of their rulings."""
+    u = guess
+    frame = BSpline(sheet.edges.t, np.concatenate([sheet.edges.c, sheet.normal.c[:, None]], axis=1), sheet.edges.k)
     for _ in range(_NEWTON_STEPS):
-        ends, up = np.asarray(sheet.edges(u)), unit(np.asarray(sheet.normal(u)))
-        ruling = unit(ends[:, 1] - ends[:, 0])
-        forward = np.cross(ruling, up)
-        v = dot(points - ends[:, 0], ruling) / np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-        first = np.asarray(sheet.edges(u, nu=1))
+        (left, right, normal), first = np.moveaxis(frame(u), 1, 0), np.asarray(sheet.edges(u, nu=1))
+        ruling = unit(right - left)
+        forward = np.cross(ruling, unit(normal))
+        v = dot(points - left, ruling) / np.linalg.norm(right - left, axis=1)
         speed = (1.0 - v) * dot(first[:, 0], forward) + v * dot(first[:, 1], forward)
-        ahead = dot(points - ends[:, 0], forward)
+        ahead = dot(points - left, forward)
         step = np.clip(u + ahead / speed, -0.02, 1.02) - u
         u = u + step
-        if np.all(np.abs(step) < 1e-10):
+        if np.all(np.abs(step) < _STILL):
             break
-    ends, up = np.asarray(sheet.edges(u)), unit(np.asarray(sheet.normal(u)))
-    across = ends[:, 1] - ends[:, 0]
-    v = dot(points - ends[:, 0], across) / dot(across, across)
-    depth = strip.thickness / 2.0 - np.abs(dot(points - ends[:, 0], up))
+    left, right, normal = np.moveaxis(frame(u), 1, 0)
+    v = dot(points - left, right - left) / dot(right - left, right - left)
+    depth = sheet.thickness / 2.0 - np.abs(dot(points - left, unit(normal)))
     flat = sheet.flattened(u, v)
     for side, sign in ((0, 1.0), (1, -1.0)):
         along = unit(np.asarray(sheet.flat(u, nu=1))[:, side])

@@ -1,6 +1,7 @@
 """The pictures: well-formed, small, every plank in them, and labels that can be read."""
 
 import itertools
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -8,17 +9,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aag_cad.parts.model import Gridshell, Shell
+from aag_cad.parts.model import Blade, Footing, Gridshell, Mullion, Rod, Shell, Strap, Strip, shell_parts
 from assembly.control import control_figures, outer_end, sling_points
 from assembly.details import beam_strips_svg
 from assembly.drawing import Box, label_box, number, placed_labels, places_round
-from assembly.outline import shell_outline
+from assembly.outline import ridge_outline, shell_outline, vault_outline
 from assembly.plan import plan_of
 from assembly.scenes import PAGE_WIDTH, Sheets, sheets_of, step_pictures
 from assembly.sections import block_section_svg, node_section_svg
+from assembly.steel import blade_section_svg, foot_section_svg, strap_section_svg
 from assembly.steps import Plan
+from assembly.view import shell_view
 
 SVG = "{http://www.w3.org/2000/svg}"
+BOLT_FILL = 'fill="#222"'
 coordinates = st.floats(-1e6, 1e6)
 
 
@@ -123,6 +127,74 @@ def test_a_beam_strip_names_all_its_blocks_and_studs(shell: Shell) -> None:
 def test_sections_name_what_they_cut(shell: Shell) -> None:
     assert {"A1 lower beam", "A2 upper beam"} <= set(words(node_section_svg(shell)))
     assert {"K coupling block", "A1 lower beam"} <= set(words(block_section_svg(shell)))
+
+
+def test_the_pieces_of_a_sheet_are_those_asked_for(gridshell: Gridshell, shell: Shell) -> None:
+    sheet = shell_outline(shell, 1800.0, 50.0, (Strap, Strip))
+    assert set(sheet.pieces) == {part.mark for part in shell_parts(shell) if isinstance(part, Strap | Strip)}
+    assert shell_outline(shell, 1800.0, 50.0).pieces == {}
+    plan = vault_outline(gridshell, 1800.0, 50.0, (Footing, Blade))
+    assert len(plan.pieces) == sum(len(shell.footings) for shell in gridshell.shells) + len(gridshell.blades)
+
+
+def test_a_concrete_block_in_plan_is_as_large_as_it_is(gridshell: Gridshell) -> None:
+    """400 x 380 mm at the scale of the sheet, by the shoelace formula; it lies about the middle of its rod."""
+    plan = vault_outline(gridshell, 1800.0, 50.0, (Footing, Rod))
+    for footing in (footing for shell in gridshell.shells for footing in shell.footings):
+        x, y = plan.pieces[footing.mark].T
+        area = 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
+        assert area == pytest.approx(400.0 * 380.0 * plan.scale**2, rel=1e-9)
+        middle = plan.pieces[f"{footing.mark}-T1"].mean(axis=0)
+        np.testing.assert_allclose(plan.pieces[footing.mark].mean(axis=0), middle, atol=5.0 * plan.scale)
+
+
+def test_strips_lie_between_their_mullions_on_the_sheet(shell: Shell) -> None:
+    sheet = shell_outline(shell, 1800.0, 50.0, (Mullion, Strip))
+    for strip in shell.strips:
+        number = int(strip.mark[-2:])
+        middles = [sheet.lines[f"S1-M-{i:02d}"].mean(axis=0) for i in (number, number + 1)]
+        place = sheet.lines[strip.mark].mean(axis=0)
+        assert min(m[0] for m in middles) < place[0] < max(m[0] for m in middles)
+
+
+def test_a_ridge_is_drawn_from_the_crown_with_all_its_blades(gridshell: Gridshell) -> None:
+    """The last blade is at the crown, at the left; both ridge planks lie on the sheet, mirrored in its middle."""
+    sheet = ridge_outline(gridshell, ("S1-E-02", "S2-E-03"), 1800.0, 50.0)
+    blades = [blade.mark for blade in gridshell.blades if blade.mark.startswith("R12")]
+    across = [float(sheet.pieces[mark].mean(axis=0)[0]) for mark in blades]
+    assert across == sorted(across, reverse=True)
+    for mark in ("S1-E-02", "S2-E-03"):
+        assert np.all(sheet.planks[mark] >= 50.0 - 1e-6)
+        assert np.all(sheet.planks[mark] <= np.array([sheet.width, sheet.height]) - 50.0 + 1e-6)
+    one, other = (sheet.lines[mark][:, 1].mean() for mark in ("S1-E-02", "S2-E-03"))
+    assert one + other == pytest.approx(sheet.height, abs=0.5)
+
+
+def test_sections_through_the_steel_show_every_bolt_of_the_joint(gridshell: Gridshell, shell: Shell) -> None:
+    """Head, two washers, shank, nut and tip: six pieces a bolt; a rod has seven."""
+    straps = {joint.mark: len(joint.fasteners) for joint in shell.joints if joint.kind == "ridge"}
+    for strap in shell.straps[:3]:
+        assert strap_section_svg(shell, strap).count(BOLT_FILL) == 6 * straps[strap.mark]
+    assert blade_section_svg(gridshell, gridshell.blades[0]).count(BOLT_FILL) == 6 * 4
+    assert foot_section_svg(shell, shell.shoes[0], named=True).count(BOLT_FILL) == 6 * 4 + 7
+
+
+def test_the_upright_of_a_shoe_changes_sides_from_foot_to_foot_in_its_section(shell: Shell) -> None:
+    first, second = (foot_section_svg(shell, shoe, named=False) for shoe in shell.shoes[:2])
+    assert first != second
+    assert all(ElementTree.fromstring(picture).tag.endswith("svg") for picture in (first, second))
+
+
+def test_control_heights_are_counted_from_the_foot_line_and_not_from_the_ground(shell: Shell) -> None:
+    control, studs = control_figures(shell), {stud.mark: stud for stud in shell.studs}
+    foot = min(joint.point[2] for joint in shell.joints if joint.kind == "foot")
+    for name, mark in control.studs.items():
+        assert control.heights[name] == pytest.approx(outer_end(studs[mark])[2] - foot, abs=1e-9)
+
+
+def test_the_view_of_a_shell_does_not_turn_with_its_feet_and_cover(shell: Shell) -> None:
+    bare = replace(shell, joints=tuple(joint for joint in shell.joints if joint.kind not in ("footing", "cover")))
+    np.testing.assert_array_equal(shell_view(shell).axes, shell_view(bare).axes)
 
 
 def test_control_figures_are_distances_between_outer_ends_of_studs(shell: Shell) -> None:

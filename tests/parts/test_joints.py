@@ -114,13 +114,15 @@ def test_who_meets_at_a_joint(shell: Shell) -> None:
 
 
 def test_who_meets_at_a_cover_joint(shell: Shell) -> None:
-    """One screw through clamping bar and mullion between strips into a block; a block on a geodesic has two more."""
+    """One screw through clamping bar and mullion between strips into a block; one on a geodesic has its own more."""
+    assert joints_of(shell, "cover")
     for joint in joints_of(shell, "cover"):
         families = Counter(mark.split("-")[1] for mark in joint.members)
         assert (families["M"], families["D"], families["K"] + families["V"]) == (1, 1, 1)
         assert families["P"] in (1, 2)
         assert families["G"] == families["V"]
-        assert [mark[-2:] for mark in joint.fasteners] == ["W1", "W2", "W3"][: 1 + 2 * families["V"]]
+        assert joint.fasteners[0] == f"{joint.mark}-W1"
+        assert (len(joint.fasteners) > 1) == bool(families["V"])
 
 
 def test_blades_join_the_ridge_planks_of_two_shells_with_four_bolts(gridshell: Gridshell) -> None:

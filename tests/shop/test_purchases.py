@@ -57,7 +57,7 @@ def test_fasteners_are_counted_and_weighed_as_they_are_placed(purchases: Purchas
     assert bought["threaded rod"] == kinds[Rod]
     assert bought["hexagon nut"] == kinds[Bolt] + 2 * kinds[Rod]
     assert bought["washer"] == 2 * (kinds[Bolt] + kinds[Rod])
-    standards = {"ISO 4014", "ISO 4032", "ISO 7093-1", "DIN 7997", "DIN 976-1"}
+    standards = {"ISO 4014", "ISO 4032", "ISO 7089", "ISO 7093-1", "DIN 7997", "DIN 976-1"}
     weighed = sum(line.mass_kg for line in purchases.lines if line.standard in standards)
     # A rod has a washer at each of its two nuts; the shank is not cut to the grip.
     assert weighed == pytest.approx(sum(mass(part, gridshell.timber) for part in fasteners), rel=1e-6)

@@ -1,0 +1,112 @@
+"""Where a segment is slung, and what keeps it stiff until it is joined again."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Literal
+
+import numpy as np
+
+from aag_cad.units import Floats
+
+LEAST_MARGIN = 100.0
+STIFF_GEODESICS = 3
+_MOST_STUDS = 60
+_OVERHANG = 100.0
+# A triangle of which twice the area is below this part of its longest side squared is a line in plan.
+_FLAT = 1e-6
+
+
+@dataclass(frozen=True)
+class Lifting:
+    """Studs to sling a segment by, standing as in the vault; ``margin`` is how far inside them its plumb line is, mm.
+
+    ``above`` says whether the plane of the studs passes above the centre of gravity: then it hangs without tipping
+    even from short slings. Without three studs around the plumb line there are none, and the margin is negative.
+    """
+
+    studs: tuple[str, ...]
+    margin: float
+    above: bool
+
+
+@dataclass(frozen=True)
+class Brace:
+    """A temporary piece between two studs: length between them and 100 mm past each, mm.
+
+    A ``bar`` is a plank bent along the bare beam ends of a cut, fixed to each of them; a ``tie`` the straight chord
+    from the lowest to the highest stud beside a cut; a ``diagonal`` goes from corner to corner.
+    """
+
+    kind: Literal["bar", "tie", "diagonal"]
+    start: str
+    end: str
+    length: float
+
+
+def _margins(corners: Floats, centre: Floats) -> tuple[Floats, Floats]:
+    """Return for triangles (n, 3, 3) how far inside the plumb line of a point is (n,), and their planes' height there.
+
+    The margin is negative where the plumb line is outside; the height above the point is nan where a triangle is
+    upright.
+    """
+    plan, point = corners[:, :, :2], centre[:2]
+    sides = np.roll(plan, -1, axis=1) - plan
+    to_point = point - plan
+    twice = sides[:, :, 0] * to_point[:, :, 1] - sides[:, :, 1] * to_point[:, :, 0]
+    lengths = np.linalg.norm(sides, axis=2)
+    area = twice.sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        margins = (np.sign(area)[:, None] * twice / lengths).min(axis=1)
+        weights = np.roll(twice, -1, axis=1) / area[:, None]
+        heights = (weights * corners[:, :, 2]).sum(axis=1) - centre[2]
+    flat = np.abs(area) > _FLAT * lengths.max(axis=1) ** 2
+    return np.where(flat & np.isfinite(margins), margins, -np.inf), heights
+
+
+def lifting_points(studs: Mapping[str, Floats], centre: Floats) -> Lifting:
+    """Return the three studs that hold a centre of gravity (3,) best: above it if they can, then with most margin.
+
+    Points are in vault coordinates, z up. Of more than 60 studs evenly many are tried.
+    """
+    marks = sorted(studs)
+    marks = marks[:: -(-len(marks) // _MOST_STUDS)] if marks else marks
+    triples = np.array(list(combinations(range(len(marks)), 3)), dtype=np.int64).reshape(-1, 3)
+    if not len(triples):
+        return Lifting((), -np.inf, False)
+    points = np.array([studs[mark] for mark in marks])
+    margins, heights = _margins(points[triples], centre)
+    above = (margins >= LEAST_MARGIN) & (np.nan_to_num(heights, nan=-1.0) > 0.0)
+    tried = np.where(above, margins, -np.inf) if above.any() else margins
+    best = int(np.argmax(np.round(tried, 3)))
+    if margins[best] < LEAST_MARGIN:
+        return Lifting((), float(margins[best]), False)
+    return Lifting(tuple(marks[i] for i in triples[best].tolist()), float(margins[best]), bool(above[best]))
+
+
+def _between(kind: Literal["bar", "tie", "diagonal"], start: str, end: str, studs: Mapping[str, Floats]) -> Brace:
+    span = float(np.linalg.norm(studs[end] - studs[start]))
+    return Brace(kind, start, end, round(span + 2.0 * _OVERHANG, 1))
+
+
+def braces(
+    studs: Mapping[str, Floats], columns: Mapping[int, list[str]], cut_sides: Mapping[int, bool], geodesics: int
+) -> tuple[Brace, ...]:
+    """Return the temporary bracing of a segment.
+
+    ``studs`` are points in vault coordinates; ``columns`` the studs of each bay from the first to the last, each from
+    the lowest to the highest; ``cut_sides`` the bays beside a cut, and whether the geodesic of the line stays there.
+    Each cut gets a tie, and a bar where its geodesic is missing; a segment with fewer than three geodesics two
+    diagonals, because a grid of beams alone is a mechanism.
+    """
+    found = []
+    for bay, keeps in cut_sides.items():
+        column = columns.get(bay, [])
+        if len(column) > 1:
+            found += [] if keeps else [_between("bar", column[0], column[-1], studs)]
+            found.append(_between("tie", column[0], column[-1], studs))
+    filled = [column for column in columns.values() if column]
+    if geodesics < STIFF_GEODESICS and len(filled) > 1:
+        first, last = filled[0], filled[-1]
+        found += [_between("diagonal", a, b, studs) for a, b in ((first[0], last[-1]), (first[-1], last[0]))]
+    return tuple(found)

@@ -1,0 +1,101 @@
+"""The calendar, read back by another program's reader."""
+
+import uuid
+from datetime import date, datetime
+from pathlib import Path
+
+import icalendar
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aag_cad.design_sections import Minutes
+from aag_cad.parts.model import Gridshell
+from assembly.durations import step_minutes
+from assembly.errors import PlanError
+from assembly.ical import calendar_text, folded, working_day, write_calendar
+from assembly.plan import plan_of
+from assembly.schedule import Schedule, schedule_of
+from assembly.steps import Plan, Step
+
+MONDAY = date(2027, 3, 1)
+
+
+@pytest.fixture(scope="module")
+def scheduled(gridshell: Gridshell) -> tuple[Plan, Schedule]:
+    plan = plan_of(gridshell, 4, 25.0)
+    return plan, schedule_of(plan, step_minutes(plan, gridshell, Minutes.model_validate({})), 4)
+
+
+def test_each_step_is_one_event_with_its_times(scheduled: tuple[Plan, Schedule], tmp_path: Path) -> None:
+    plan, schedule = scheduled
+    write_calendar(plan, schedule, MONDAY, tmp_path / "schedule.ics")
+    calendar = icalendar.Calendar.from_ical((tmp_path / "schedule.ics").read_bytes())
+    assert (calendar["VERSION"], calendar["CALSCALE"]) == ("2.0", "GREGORIAN")
+    events = calendar.walk("VEVENT")
+    assert len(events) == len(plan.steps)
+    assert len({str(event["UID"]) for event in events}) == len(plan.steps)
+    for step, when, event in zip(plan.steps, schedule.steps, events, strict=True):
+        assert event["SUMMARY"] == f"{step.number} {step.title}"
+        assert all(line in event["DESCRIPTION"] for line in step.instructions)
+        assert uuid.UUID(str(event["UID"])).version == 5
+        begin, end = event.decoded("DTSTART"), event.decoded("DTEND")
+        number, minute = divmod(when.start_minute, 480)
+        day = working_day(MONDAY, number, 5)
+        assert begin == datetime(day.year, day.month, day.day, 7 + minute // 60, minute % 60)
+        assert begin < end
+        assert end.weekday() < 5
+        assert (end.hour, end.minute) <= (15, 0)
+        assert event.decoded("DTSTAMP").date() == MONDAY
+
+
+def test_lines_end_with_cr_lf_and_have_at_most_75_octets(scheduled: tuple[Plan, Schedule]) -> None:
+    data = calendar_text(*scheduled, MONDAY).encode("utf-8")
+    lines = data.split(b"\r\n")
+    assert lines[-1] == b""
+    assert max(map(len, lines)) <= 75
+    assert b"\n" not in b"".join(lines)
+    assert all(line.decode("utf-8") for line in lines[:-1])
+
+
+@given(st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=300))
+def test_a_folded_line_unfolds_to_itself(content: str) -> None:
+    pieces = folded(content).encode("utf-8").split(b"\r\n")
+    assert max(map(len, pieces)) <= 75
+    assert folded(content).replace("\r\n ", "").removesuffix("\r\n") == content
+
+
+@given(st.text(st.characters(exclude_categories=["Cs", "Cc"], include_characters="\n,;\\"), min_size=1, max_size=80))
+def test_any_title_survives_the_calendar(title: str) -> None:
+    plan = Plan("one", (Step(1, "s1", "studs", title, "", (), (), (), 1, (), ()),))
+    calendar = icalendar.Calendar.from_ical(calendar_text(plan, schedule_of(plan, {"s1": 60}, 1), MONDAY))
+    assert calendar.walk("VEVENT")[0]["SUMMARY"] == f"1 {title}"
+
+
+def test_a_step_that_ends_with_the_day_ends_in_the_evening_and_the_next_begins_in_the_morning() -> None:
+    steps = tuple(
+        Step(i, f"s{i}", "studs", f"{i}", "", (), (), (), 1, (f"s{i - 1}",) if i > 1 else (), ()) for i in (1, 2)
+    )
+    plan = Plan("two", steps)
+    friday = date(2027, 3, 5)
+    calendar = icalendar.Calendar.from_ical(
+        calendar_text(plan, schedule_of(plan, {"s1": 480, "s2": 500}, 1), friday, 5)
+    )
+    first, second = calendar.walk("VEVENT")
+    assert first.decoded("DTEND") == datetime(2027, 3, 5, 15)
+    assert second.decoded("DTSTART") == datetime(2027, 3, 8, 7)
+    assert second.decoded("DTEND") == datetime(2027, 3, 9, 7, 20)
+
+
+def test_seven_days_a_week_have_no_weekend() -> None:
+    assert working_day(MONDAY, 6, 7) == date(2027, 3, 7)
+    assert working_day(MONDAY, 5, 5) == date(2027, 3, 8)
+
+
+def test_a_start_on_a_day_off_is_refused(scheduled: tuple[Plan, Schedule]) -> None:
+    with pytest.raises(PlanError, match=r"crew\.start: 2027-03-06 is a Saturday"):
+        calendar_text(*scheduled, date(2027, 3, 6))
+
+
+def test_the_same_schedule_gives_the_same_calendar(scheduled: tuple[Plan, Schedule]) -> None:
+    assert calendar_text(*scheduled, MONDAY) == calendar_text(*scheduled, MONDAY)
