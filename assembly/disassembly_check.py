@@ -200,8 +200,7 @@ def check_disassembly(plan: Plan, gridshell: Gridshell) -> list[str]:
 
     Every part leaves exactly once; nothing is taken from under what lies on it or before its fasteners are out; what
     holds a shell (cover off, ridges, foot bolts, screws, edge planks, studs) goes only when props, slings or the floor
-    hold it instead, forced by predecessors; one shell hangs at a time; every plank is measured
-    after it has left.
+    hold it instead, forced by predecessors; one shell hangs at a time; every plank is measured after it has left.
     """
     leaves, lying = _places(plan, gridshell)
     forced = _forced(plan)

@@ -3,6 +3,8 @@
 import math
 from typing import TypeAlias
 
+from aag_cad.parts.marks import parse_mark
+from assembly.ranges import joined_ranges
 from assembly.segments import Segment, Segmentation
 from assembly.splices import Splice
 
@@ -15,6 +17,7 @@ SPLICES_HEADER = (
     "member", "line", "joint", "kind", "plank", "station_mm", "clear_mm", "required_mm", "length_mm", "bolts",
     "bolt_diameter_mm", "left_out", "fits",
 )  # fmt: skip
+_PLANKS = ("A1", "A2", "G", "E")
 BRACE_WORDS = {
     "bar": "bar along the bare beam ends, screwed to each",
     "tie": "straight tie beside the cut",
@@ -117,7 +120,7 @@ def _splice_words(splice: Splice) -> str:
 def segment_cards(plan: Segmentation) -> list[Card]:
     """Return one card for each segment, ready for a printed sheet: facts as text, splices and braces as lists.
 
-    Keys: name, shell, geodesics, parts, mass, centre, size, turned, room, lifting, braces (kind, text, from, to,
+    Keys: name, shell, geodesics, parts, planks (whole) and cut_planks as ranges of marks, mass, centre, size, turned, room, lifting, braces (kind, text, from, to,
     length), splices (member, line, text, stations) of the lines of this segment whose blocks it carries, and
     loose_ends: its other cut beams.
     """
@@ -135,6 +138,8 @@ def _card(plan: Segmentation, segment: Segment) -> Card:
         "shell": segment.shell,
         "geodesics": list(segment.geodesics),
         "parts": f"{len(segment.parts)} whole parts, {len(segment.pieces)} pieces of cut planks",
+        "planks": joined_ranges([mark for mark in segment.parts if parse_mark(mark).family in _PLANKS]),
+        "cut_planks": joined_ranges(sorted(planks)),
         "mass": f"{_number(segment.mass)} kg, {_number(segment.mass - segment.timber)} kg of it steel",
         "centre": f"x {x}, y {y}, z {z} mm",
         "size": _size(segment),

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from aag_cad.audit import (
 )
 from aag_cad.design import Design
 from aag_cad.parts.model import Blank, Gridshell, Plank
+from aag_cad.shop.purchases import purchases_of
 
 
 def _with_plank(gridshell: Gridshell, mark: str, change: Callable[[Plank], Plank]) -> Gridshell:
@@ -42,7 +44,7 @@ def test_the_beams_of_the_vault_say_which_bolts_sit_near_the_ridge_ends(design: 
 
 
 def test_the_vault_has_no_error(design: Design, gridshell: Gridshell) -> None:
-    found = audit(design, gridshell)
+    found = audit(design, gridshell, purchases_of(gridshell, design))
     assert "error" not in {f.severity for f in found}
     assert {f.code for f in found} <= {f"AAG20{i}" for i in range(1, 8)}, "only fasteners miss a clause"
 
@@ -78,7 +80,7 @@ def test_a_tighter_limit_turns_every_geodesic_into_a_finding(design: Design, gri
     ],
 )
 def test_weaker_or_stiffer_timber_is_found(
-    design: Design, gridshell: Gridshell, change: dict[str, float], code: str
+    design: Design, gridshell: Gridshell, change: dict[str, Any], code: str
 ) -> None:
     weaker = replace(gridshell, timber=replace(gridshell.timber, **change))
     assert code in {f.code for f in forming_findings(design, weaker)}
@@ -182,7 +184,7 @@ def test_a_hole_off_its_bolt_and_a_missing_hole_are_found(design: Design, gridsh
 
 def test_findings_come_errors_first_with_figure_limit_unit_and_remedy(design: Design, gridshell: Gridshell) -> None:
     strict = replace(gridshell, timber=replace(gridshell.timber, min_bending_radius=1800.0))
-    found = audit(design, strict)
+    found = audit(design, strict, purchases_of(strict, design))
     severities = [f.severity for f in found]
     assert severities == sorted(severities, key=["error", "warning", "note"].index)
     assert found[0].text == (

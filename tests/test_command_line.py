@@ -35,7 +35,7 @@ def test_the_schema_is_json_and_knows_every_table_of_the_design_file() -> None:
     schema = json.loads(run.stdout)
     assert set(schema["properties"]) == {
         "project", "surface", "shells", "pattern", "timber", "joints", "boundary", "facade", "supports", "transport",
-        "crew", "stock", "optimise",
+        "crew", "stock", "optimise", "ridge", "site",
     }  # fmt: skip
     assert schema["additionalProperties"] is False
 

@@ -23,6 +23,20 @@ def _coordinates(points: Floats) -> list[list[float]]:
     return rows
 
 
+def welded(mesh: Mesh) -> Mesh:
+    """Return a closed mesh with one vertex for all that are written as the same point, and without flattened faces.
+
+    Where the ends of two cuts of a sheet meet, its mesh has such vertices.
+    """
+    _, first, place = np.unique(np.round(mesh.vertices, _DIGITS), axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    faces = rank[place.reshape(-1)][mesh.faces]
+    a, b, c = faces.T
+    return Mesh(mesh.vertices[first[order]], faces[(a != b) & (b != c) & (c != a)])
+
+
 def face_set(model: IfcModel, mesh: Mesh) -> Entity:
     """Return a closed mesh as a triangulated face set."""
     points = model.file.create_entity("IfcCartesianPointList3D", _coordinates(mesh.vertices))
@@ -82,9 +96,9 @@ def _body(model: IfcModel, part: Part) -> tuple[str, list[Entity]]:
         case _ if model.options.geometry == "brep" and isinstance(part, FlatBar):
             return "AdvancedBrep", [advanced_brep(model, part)]
         case _ if model.schema == "IFC2X3":
-            return "Brep", [faceted_brep(model, product_mesh(part))]
+            return "Brep", [faceted_brep(model, welded(product_mesh(part)))]
         case _:
-            return "Tessellation", [face_set(model, product_mesh(part))]
+            return "Tessellation", [face_set(model, welded(product_mesh(part)))]
 
 
 def _axis(model: IfcModel, plank: Plank) -> Entity:

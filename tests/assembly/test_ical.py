@@ -37,7 +37,7 @@ def test_each_step_is_one_event_with_its_times(scheduled: tuple[Plan, Schedule],
     assert len({str(event["UID"]) for event in events}) == len(plan.steps)
     for step, when, event in zip(plan.steps, schedule.steps, events, strict=True):
         assert event["SUMMARY"] == f"{step.number} {step.title}"
-        assert all(line in event["DESCRIPTION"] for line in step.instructions)
+        assert all(line in str(event["DESCRIPTION"]) for line in step.instructions)
         assert uuid.UUID(str(event["UID"])).version == 5
         begin, end = event.decoded("DTSTART"), event.decoded("DTEND")
         number, minute = divmod(when.start_minute, 480)

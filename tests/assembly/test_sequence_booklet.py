@@ -75,8 +75,8 @@ def test_pages_are_a4_one_a_step_for_a_single_shell_too(one_shell: Gridshell) ->
     reader = PdfReader(BytesIO(sequence_pdf(plan, one_shell)))
     assert len(reader.pages) == FIRST_PAGES + len(plan.steps)
     feet = next(step for step in plan.steps if step.phase == "feet")
-    page = " ".join(reader.pages[FIRST_PAGES + feet.number - 1].extract_text().split())
-    assert "Set out the feet of the vault" in page
+    words = " ".join(reader.pages[FIRST_PAGES + feet.number - 1].extract_text().split())
+    assert "Set out the feet of the vault" in words
     for page in reader.pages:
         # 210 x 297 mm in points, to the rounding of the writer.
         assert float(page.mediabox.width) == pytest.approx(595.28, abs=0.01)

@@ -54,7 +54,7 @@ def test_each_blade_has_two_bolts_in_either_ridge_plank(gridshell: Gridshell) ->
         assert blade == joint.mark
         assert len(joint.fasteners) == 4
         assert {(left, joint.mark), (right, joint.mark)} <= holes
-        first, second = parse_mark(joint.mark).family[1:]
+        first, second = list(parse_mark(joint.mark).family[1:])
         assert (left, right) == (f"S{first}-E-02", f"S{second}-E-03")
 
 

@@ -1,0 +1,300 @@
+"""The order of fixing the flat planks: greedy against all orders, soft modes against rigidity, and the vault."""
+
+from dataclasses import replace
+from itertools import permutations
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from aag_cad.design import Design, load_design
+from aag_cad.mechanics.frame import FrameResult, lowest_modes, static_solution
+from aag_cad.mechanics.frame_model import DOFS, FrameModel, FrameSection, NodalLoad, Support
+from aag_cad.mechanics.frame_system import against_unknowns, frame_system, full_stiffness
+from aag_cad.mechanics.shell_model import ShellFrame, shell_frame
+from aag_cad.parts.model import Gridshell, Shell
+from aag_cad.pipeline import gridshell_of
+from aag_cad.units import Floats
+from assembly.errors import PlanError
+from assembly.locking import (
+    LOCKING_HEADER,
+    SAG_LIMIT,
+    LockingOrder,
+    area_under,
+    best_order,
+    edge_groups,
+    frequency,
+    greedy_order,
+    locking_order,
+    locking_orders,
+    locking_rows,
+    locking_svg,
+    lowest_eigenvalue,
+    soft_mode_count,
+)
+from assembly.locking_model import GRAVITY, LockingModel, locking_model, modes_of, sag_of
+
+ARM = 300.0
+
+
+@pytest.fixture(scope="module")
+def small() -> Gridshell:
+    """The vault's design with six geodesics a shell."""
+    data = load_design("vault").model_dump()
+    data["pattern"]["geodesics"] = 6
+    return gridshell_of(Design.model_validate(data))
+
+
+@pytest.fixture(scope="module")
+def vault_order(gridshell: Gridshell) -> LockingOrder:
+    """The order of the first shell of the vault."""
+    return locking_order(gridshell.shells[0], gridshell.timber)
+
+
+def supported(shell: Shell, frame: ShellFrame, model: LockingModel) -> FrameModel:
+    """Return the frame on its feet and on the props at the hoists, built anew and not from the locking model."""
+    slaves = {link.slave for link in frame.model.links}
+    held = [Support(node, ("x", "y", "z")) for foot in model.feet for node in frame.beam_nodes[foot]]
+    held += [Support(n, ("z",)) for hoist in model.hoists for n in frame.beam_nodes[hoist] if n not in slaves]
+    return replace(frame.model, supports=tuple(held))
+
+
+def flat_planks(shell: Shell, *families: str) -> tuple[str, ...]:
+    return tuple(plank.mark for plank in shell.planks if plank.family in families)
+
+
+def self_weight(frame: ShellFrame) -> tuple[NodalLoad, ...]:
+    nodes = [node.mark for node in frame.model.nodes]
+    return tuple(
+        NodalLoad(node, (0.0, 0.0, -GRAVITY * weight))
+        for node, weight in zip(nodes, frame.masses.tolist(), strict=True)
+    )
+
+
+def test_the_states_are_those_of_a_frame_built_anew_with_the_planks_that_are_fixed(small: Gridshell) -> None:
+    """Eigenvalues and sag by adding up planks against ``lowest_modes`` and ``static_solution`` of the whole."""
+    shell = small.shells[0]
+    model = locking_model(shell, small.timber)
+    for fixed in ((), model.lower, model.upper, ("S1-G-02", "S1-G-05"), (*model.upper, "S1-G-03")):
+        frame = shell_frame(shell, small.timber, fixed=fixed)
+        standing = supported(shell, frame, model)
+        expected = lowest_modes(standing, 6, frame.masses).eigenvalues
+        assert modes_of(model, fixed, 6)[0] == pytest.approx(expected, rel=1e-6)
+        moved = static_solution(standing, self_weight(frame))
+        assert sag_of(model, fixed, 1e9, 4).displacement == pytest.approx(largest_on_beams(frame, moved), rel=1e-6)
+
+
+def largest_on_beams(frame: ShellFrame, result: FrameResult) -> float:
+    at = [i for i, node in enumerate(frame.model.nodes) if "-A" in node.mark]
+    return float(np.linalg.norm(result.displacements[at, :3], axis=1).max())
+
+
+def test_proposed_props_hold_what_a_frame_with_supports_there_holds(small: Gridshell) -> None:
+    shell = small.shells[0]
+    model = locking_model(shell, small.timber)
+    sag = sag_of(model, (), 0.2, 2)
+    assert len(sag.props) == 2
+    assert sag.props[0].sinking > 0.2
+    frame = shell_frame(shell, small.timber, fixed=())
+    standing = supported(shell, frame, model)
+    slaves = {link.slave for link in frame.model.links}
+    props = [n for prop in sag.props for n in frame.beam_nodes[prop.joint] if n not in slaves]
+    propped = replace(standing, supports=(*standing.supports, *(Support(node, ("z",)) for node in props)))
+    result = static_solution(propped, self_weight(frame))
+    assert sag.propped == pytest.approx(largest_on_beams(frame, result), rel=1e-6)
+    places = [node.mark for node in frame.model.nodes]
+    reactions = [result.reactions[places.index(node), 2] for node in props]
+    assert [prop.force for prop in sag.props] == pytest.approx(reactions, rel=1e-6)
+
+
+def test_no_eigenvalue_falls_when_a_plank_is_fixed(small: Gridshell) -> None:
+    """Courant's minimax principle: masses stay, stiffness is added."""
+    model = locking_model(small.shells[0], small.timber)
+    fixed: tuple[str, ...] = ()
+    before = modes_of(model, fixed, 6)[0]
+    for group in (*edge_groups(model), *model.geodesics):
+        fixed = (*fixed, *group)
+        after = modes_of(model, fixed, 6)[0]
+        assert np.all(after > before * (1.0 - 1e-6))
+        before = after
+
+
+def test_the_greedy_order_comes_within_two_percent_of_the_best_of_all_720(small: Gridshell) -> None:
+    """Six geodesics one by one after the edges: area under the lowest eigenvalue, greedy / best = 0.991."""
+    model = locking_model(small.shells[0], small.timber, pairs=False)
+    value, edges = lowest_eigenvalue(model), edge_groups(model)
+    groups = (*edges, *model.geodesics)
+    best = max(area_under((*edges, *order), value) for order in permutations(model.geodesics))
+    assert area_under(best_order(groups, value, edges), value) == pytest.approx(best, rel=1e-12)
+    ratio = area_under(greedy_order(groups, value, edges), value) / best
+    assert ratio == pytest.approx(0.991, abs=0.005)
+
+
+def test_in_pairs_the_greedy_order_is_the_best_of_all(small: Gridshell) -> None:
+    model = locking_model(small.shells[0], small.timber)
+    value = lowest_eigenvalue(model)
+    groups = (*edge_groups(model), *model.geodesics)
+    assert model.geodesics == (("S1-G-01", "S1-G-06"), ("S1-G-02", "S1-G-05"), ("S1-G-03", "S1-G-04"))
+    assert greedy_order(groups, value) == best_order(groups, value)
+
+
+def rigidity_matrix(model: FrameModel) -> Floats:
+    """Return one row (6 n) for each way in which members, arms, pins and supports do not give at all.
+
+    Planks do not stretch and do not bend about their strong axis; they bend about the weak one and twist freely. Rotations
+    are scaled by a bay's length. Written from the data of the model, without the engine.
+    """
+    place = {node.mark: i for i, node in enumerate(model.nodes)}
+    points = np.array([node.point for node in model.nodes])
+    rows: list[Floats] = []
+
+    def row(*terms: tuple[int, Floats, Floats]) -> None:
+        line = np.zeros((len(points), 6))
+        for node, shift, turn in terms:
+            line[node, :3] += shift
+            line[node, 3:] += turn / ARM
+        rows.append(line.ravel())
+
+    none, axes = np.zeros(3), np.eye(3)
+    for item in model.elements:
+        i, j = place[item.start], place[item.end]
+        a, b = np.array(item.start_offset), np.array(item.end_offset)
+        chord = points[j] + b - points[i] - a
+        length = float(np.linalg.norm(chord))
+        x = chord / length
+        z = np.array(item.direction) - (np.array(item.direction) @ x) * x
+        z /= np.linalg.norm(z)
+        y = np.cross(z, x)
+        row((j, x, np.cross(b, x)), (i, -x, -np.cross(a, x)))
+        about, across = (y, z) if item.section.inertia_y > item.section.inertia_z else (z, -y)
+        slope = across * ARM / length
+        for end in (i, j):
+            row((end, none, ARM * about), (j, slope, np.cross(b, slope)), (i, -slope, -np.cross(a, slope)))
+    for link in model.links:
+        m, s = place[link.master], place[link.slave]
+        arm = points[s] - points[m]
+        square = axes if link.pin is None else np.linalg.svd(np.array([link.pin]))[2][1:]
+        for axis in axes:
+            row((s, axis, none), (m, -axis, -np.cross(arm, axis)))
+        for axis in square:
+            row((s, none, ARM * axis), (m, none, -ARM * axis))
+    for support in model.supports:
+        for dof in support.held:
+            k = DOFS.index(dof)
+            row((place[support.node], axes[k % 3] * (k < 3), ARM * axes[k % 3] * (k > 2)))
+    return np.array(rows)
+
+
+def without_weak_stiffness(section: FrameSection, share: float) -> FrameSection:
+    strong = max(section.inertia_y, section.inertia_z)
+    weak = [value if value == strong else share * value for value in (section.inertia_y, section.inertia_z)]
+    return FrameSection(section.area, share * section.torsion, *weak)
+
+
+@pytest.mark.parametrize(
+    "fixed", [(), ("E",), ("S1-G-03",), ("S1-G-01", "S1-G-06"), ("E", "S1-G-02", "S1-G-05"), ("E", "G")]
+)
+def test_soft_modes_are_the_null_space_of_the_rigidity_matrix_when_weak_stiffness_vanishes(
+    small: Gridshell, fixed: tuple[str, ...]
+) -> None:
+    """The shell on its feet; torsion and weak bending 1e-13 of what they are, against a dense SVD.
+
+    Beams on a smooth surface are mechanisms but for their curvature within a bay: such motions strain by 1e-4 of others
+    and count as free on both sides. The gap above them is seven in the singular values, its square in the eigenvalues.
+    """
+    shell = small.shells[0]
+    screwed = [mark for name in fixed for mark in (flat_planks(shell, name) or (name,))]
+    frame = shell_frame(shell, small.timber, fixed=screwed)
+    feet = locking_model(shell, small.timber).feet
+    held = tuple(Support(node, ("x", "y", "z")) for foot in feet for node in frame.beam_nodes[foot])
+    model = replace(frame.model, supports=held)
+    matrix = rigidity_matrix(model)
+    singular = np.sort(np.linalg.svd(matrix, compute_uv=False))
+    null = int(np.sum(singular < 1e-4 * singular[-1]))
+    assert singular[null] > 7.0 * singular[null - 1]
+    elements = tuple(replace(e, section=without_weak_stiffness(e.section, 1e-13)) for e in model.elements)
+    system = frame_system(replace(model, elements=elements))
+    stiffness = against_unknowns(system, full_stiffness(system)).toarray()
+    eigenvalues = np.linalg.eigvalsh(stiffness[np.ix_(system.free, system.free)])
+    assert soft_mode_count(eigenvalues.tolist(), 2e-5) == null
+
+
+def test_the_hoisted_vault_has_three_soft_modes_and_the_finished_one_none(vault_order: LockingOrder) -> None:
+    hoisted, finished = vault_order.steps[0], vault_order.steps[-1]
+    assert hoisted.marks == ()
+    assert hoisted.soft_modes == 3
+    assert finished.soft_modes == 0
+    # The next mode is more than twice as fast: the count does not hang on where the threshold lies.
+    assert frequency(hoisted.eigenvalues[3]) > 2.0 * frequency(hoisted.eigenvalues[2])
+
+
+def test_the_vault_is_fixed_edges_first_then_the_side_geodesics(vault_order: LockingOrder) -> None:
+    """Paper, section 3.2: planks at the lower and upper boundaries; then the sides, which hold the shape."""
+    marks = [step.marks for step in vault_order.steps]
+    assert marks[1:4] == [("S1-E-01",), ("S1-E-02", "S1-E-03"), ("S1-G-01", "S1-G-14")]
+    fixed = [mark for step in marks for mark in step]
+    assert len(fixed) == len(set(fixed)) == 17
+    lowest = [step.eigenvalues[0] for step in vault_order.steps]
+    assert all(b > a * (1.0 - 1e-6) for a, b in zip(lowest, lowest[1:], strict=False))
+    assert lowest[3] > 3.0 * lowest[2]
+
+
+def test_the_rule_that_edges_come_first_has_its_price(vault_order: LockingOrder) -> None:
+    """15 % of the area under the lowest eigenvalue: the lower edge plank lies on feet that are held anyway."""
+    assert vault_order.rule_price == pytest.approx(0.15, abs=0.02)
+
+
+def test_props_are_proposed_while_a_soft_mode_sags_too_far(vault_order: LockingOrder) -> None:
+    for step in vault_order.steps:
+        assert bool(step.props) == (step.soft_modes > 0 and step.displacement > SAG_LIMIT)
+        assert step.propped <= step.displacement
+    assert vault_order.steps[0].props[0].joint in ("S1-K-015", "S1-K-198")
+    assert vault_order.steps[0].propped < SAG_LIMIT
+
+
+def test_without_the_rule_edges_take_their_turn_and_it_costs_nothing(small: Gridshell) -> None:
+    order = locking_order(small.shells[0], small.timber, edges_first=False)
+    assert order.rule_price == 0.0
+    assert order.steps[1].marks == ("S1-G-03", "S1-G-04")
+
+
+def test_shells_alike_have_the_same_order_with_their_own_marks(small: Gridshell) -> None:
+    first, _, third = locking_orders(small)
+    assert third.shell == "S3"
+    assert [step.marks for step in third.steps] == [
+        tuple(mark.replace("S1", "S3") for mark in step.marks) for step in first.steps
+    ]
+    assert third.hoists == tuple(mark.replace("S1", "S3") for mark in first.hoists)
+    own = locking_order(small.shells[2], small.timber)
+    assert [step.marks for step in own.steps] == [step.marks for step in third.steps]
+
+
+def test_the_table_has_a_line_for_every_step_and_the_released_shell(vault_order: LockingOrder) -> None:
+    rows = locking_rows(vault_order)
+    assert all(len(row) == len(LOCKING_HEADER) for row in rows)
+    assert [row[1] for row in rows] == [*map(str, range(10)), "released"]
+    assert rows[2][2] == "S1-E-02 S1-E-03"
+
+
+def test_the_plot_shows_every_step_within_its_sheet(vault_order: LockingOrder) -> None:
+    root = ElementTree.fromstring(locking_svg(vault_order))
+    space = {"svg": "http://www.w3.org/2000/svg"}
+    _, _, width, height = (float(value) for value in root.attrib["viewBox"].split())
+    texts = {element.text for element in root.findall(".//svg:text", space)}
+    assert {_short for step in vault_order.steps for _short in (mark[3:] for mark in step.marks)} <= texts
+    circles = root.findall(".//svg:circle", space)
+    assert len(circles) == 4 * len(vault_order.steps)
+    assert all(0 < float(c.attrib["cx"]) < width and 0 < float(c.attrib["cy"]) < height for c in circles)
+
+
+@pytest.mark.parametrize(("hoists", "text"), [(("S1-K-001",), "^S1-K-001: it is no stud of S1")])
+def test_a_hoist_that_is_no_stud_is_refused(small: Gridshell, hoists: tuple[str, ...], text: str) -> None:
+    with pytest.raises(PlanError, match=text):
+        locking_order(small.shells[0], small.timber, hoists=hoists)
+
+
+def test_a_shell_without_geodesics_or_feet_is_refused(small: Gridshell) -> None:
+    shell = small.shells[0]
+    bare = replace(shell, joints=tuple(joint for joint in shell.joints if joint.kind != "boundary"))
+    with pytest.raises(PlanError, match=r"^S1: .*(no joint of a beam on a lower edge plank|parts that no joint)"):
+        locking_order(bare, small.timber)
