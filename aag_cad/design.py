@@ -8,25 +8,17 @@ from typing import Any, TypeAlias
 import numpy as np
 from pydantic import ValidationError, model_validator
 
+from aag_cad.design_base import Section
+from aag_cad.design_making import Boundary, Crew, Facade, Joints, Ridge, Stock, Supports, Timber, Transport
 from aag_cad.design_sections import (
-    Boundary,
-    Crew,
-    Facade,
-    Joints,
     LevelShells,
     Optimise,
     Pattern,
     Project,
-    Ridge,
-    Section,
     ShellsSection,
     Site,
     SplineSurface,
-    Stock,
-    Supports,
     SurfaceSection,
-    Timber,
-    Transport,
 )
 from aag_cad.errors import DesignError, FileError
 from aag_cad.resources import template

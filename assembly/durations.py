@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 
-from aag_cad.design_sections import Minutes
+from aag_cad.design_making import Minutes
 from aag_cad.parts.model import (
     Blade,
     Bolt,

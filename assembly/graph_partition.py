@@ -44,7 +44,7 @@ def _slices(graph: "nx.Graph[str]", nodes: list[str]) -> Halves:
     along = np.round(centred @ np.linalg.svd(centred, full_matrices=False)[2][0], 6)
     order = sorted(range(len(nodes)), key=lambda i: (along[i], nodes[i]))
     masses = np.cumsum([float(graph.nodes[nodes[i]]["mass_kg"]) for i in order])
-    middle = min(max(int(np.searchsorted(masses, masses[-1] / 2.0)), 1), len(nodes) - 1)
+    middle = min(int(np.argmin(np.abs(masses - masses[-1] / 2.0))) + 1, len(nodes) - 1)
     low, high = sorted(sorted(nodes[i] for i in side) for side in (order[:middle], order[middle:]))
     return low, high
 
@@ -83,9 +83,8 @@ def partition_graph(graph: "nx.Graph[str]", limits: Limits) -> tuple[frozenset[s
 
     Any networkx graph whose nodes carry ``mass_kg`` and ``position`` (mm), such as ``assembly.graph.assembly_graph``.
     The size is that of the positions: where parts stand out past them, give limits less by that. Halves of equal mass
-    are exchanged node by node (Kernighan and Lin), which keeps their node counts, where no half outgrows the transport by
-    it; groups come in the order of their
-    first marks. PlanError if a node lacks an attribute or is too heavy by itself.
+    are exchanged node by node (Kernighan and Lin), which keeps their node counts, where no half
+    outgrows the transport by it; groups come in the order of their first marks. PlanError if a node lacks an attribute or is too heavy by itself.
     """
     for node in sorted(graph):
         missing = sorted({"mass_kg", "position"} - set(graph.nodes[node]))

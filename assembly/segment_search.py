@@ -90,16 +90,20 @@ def best_stops(item: Divisible, limits: Limits) -> tuple[int, ...] | None:
     far = (*stops, *(stop + turn for stop in stops)) if grid.ring else stops
     reach = furthest(far, len(stops), fitting)
 
+    def allowed(start: int, end: int) -> bool:
+        return end <= reach[start] and _owns(item, start, end)
+
     @cache
-    def grams(start: int, end: int) -> int | None:
-        if end > reach[start] or not _owns(item, start, end):
-            return None
+    def grams(start: int, end: int) -> int:
         return round(_GRAMS * run_between(item, start, end).mass)
 
     def cost(stop: int) -> int:
         return sum(splice.kind == "block" for splice in run_splices(item, stop))
 
-    best = best_ring(stops, turn, cost, grams, None) if grid.ring else best_chain(stops, cost, grams)
+    if grid.ring:
+        best = best_ring(stops, turn, cost, allowed, grams)
+    else:
+        best = best_chain(stops, cost, allowed, grams)
     return None if best is None else best.stops
 
 

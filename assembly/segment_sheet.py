@@ -120,9 +120,9 @@ def _splice_words(splice: Splice) -> str:
 def segment_cards(plan: Segmentation) -> list[Card]:
     """Return one card for each segment, ready for a printed sheet: facts as text, splices and braces as lists.
 
-    Keys: name, shell, geodesics, parts, planks (whole) and cut_planks as ranges of marks, mass, centre, size, turned, room, lifting, braces (kind, text, from, to,
-    length), splices (member, line, text, stations) of the lines of this segment whose blocks it carries, and
-    loose_ends: its other cut beams.
+    Keys: name, shell, geodesics, parts, planks (whole) and cut_planks as ranges of marks, mass, centre, size, turned,
+    room, lifting, braces (kind, text, from, to, length), splices (member, line, text, stations) whose blocks it
+    carries, and loose_ends: its other cut beams and edge planks.
     """
     return [_card(plan, segment) for segment in plan.segments]
 

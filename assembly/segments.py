@@ -151,6 +151,9 @@ def _up(size: float) -> float:
 def _wish(item: Divisible, limits: Limits) -> str:
     """Return what would let a shell travel whole."""
     run = _whole_run(item)
+    load = f"a load of {math.ceil(run.mass)} kg"
+    if pose_in(run, limits, 1.0).filling <= 1.0 + _ROUNDING:
+        return load
     words = [
         f"transport.{key} = {_up(size):.0f}"
         for key, size in zip(("width", "height"), least_widths(run, limits), strict=True)
@@ -160,7 +163,7 @@ def _wish(item: Divisible, limits: Limits) -> str:
         pose = pose_in(run, limits)
         words = [f"a transport of {' x '.join(f'{_up(size):.0f}' for size in pose.size)} mm"]
     wish = " or ".join(words)
-    return f"{wish} and a load of {math.ceil(run.mass)} kg" if run.mass > limits.load else wish
+    return f"{wish} and {load}" if run.mass > limits.load else wish
 
 
 def _cut_words(item: Divisible, stops: tuple[int, ...], limits: Limits, wish: str) -> str:

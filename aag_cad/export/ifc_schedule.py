@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from datetime import date
 
-from aag_cad.design_sections import Minutes
+from aag_cad.design_making import Minutes
 from aag_cad.errors import DesignError
 from aag_cad.export.ifc_base import TIMESTAMP, Entity, IfcModel, declare, rooted
 from aag_cad.export.ifc_schemas import IfcOptions

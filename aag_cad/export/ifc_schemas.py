@@ -6,7 +6,8 @@ from typing import Literal, TypeAlias, get_args
 
 import ifcopenshell
 
-from aag_cad.design_sections import Crew, Site
+from aag_cad.design_making import Crew
+from aag_cad.design_sections import Site
 from aag_cad.errors import DesignError
 from aag_cad.export.ifc_kinds import IfcKind
 

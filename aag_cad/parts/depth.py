@@ -60,7 +60,7 @@ def surface_points(part: Part) -> Floats:
     if isinstance(part, CouplingBlock):
         return _box_points(part.length, part.width, part.thickness)
     if isinstance(part, Footing):
-        return _box_points(part.length, part.width, part.height) - np.array([0.0, 0.0, part.height / 2.0])
+        return np.asarray(_box_points(part.length, part.width, part.height) - [0.0, 0.0, part.height / 2.0])
     if isinstance(part, Strip):
         return strip_points(part, _SHEET_SPACING, _FACE_SPACING)
     if isinstance(part, Shoe | Blade):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeAlias
 
-from aag_cad.design_sections import Stock
+from aag_cad.design_making import Stock
 from aag_cad.parts.model import Hole, Plank
 from aag_cad.shop.stock import Piece, Refusal, StockRules
 

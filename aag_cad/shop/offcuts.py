@@ -12,7 +12,7 @@ from typing import TypeAlias
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, milp
 
-from aag_cad.design_sections import Stock, Timber
+from aag_cad.design_making import Stock, Timber
 from aag_cad.errors import FileError
 from aag_cad.parts.model import Blank, CrossSection, Hole, Plank
 from aag_cad.shop.passports import REUSE_HEADER

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from aag_cad.design_sections import Minutes
+from aag_cad.design_making import Minutes
 from aag_cad.parts.model import Gridshell
 from assembly.disassembly import disassembly_of
 from assembly.durations import step_minutes

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aag_cad.design_sections import Minutes
+from aag_cad.design_making import Minutes
 from aag_cad.parts.model import Gridshell
 from assembly.durations import step_minutes
 from assembly.errors import PlanError

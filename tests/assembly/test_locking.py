@@ -1,7 +1,7 @@
 """The order of fixing the flat planks: greedy against all orders, soft modes against rigidity, and the vault."""
 
 from dataclasses import replace
-from itertools import permutations
+from itertools import pairwise, permutations
 from xml.etree import ElementTree
 
 import numpy as np
@@ -34,7 +34,7 @@ from assembly.locking import (
 )
 from assembly.locking_model import GRAVITY, LockingModel, locking_model, modes_of, sag_of
 
-ARM = 300.0
+BAY = 300.0
 
 
 @pytest.fixture(scope="module")
@@ -139,10 +139,10 @@ def test_in_pairs_the_greedy_order_is_the_best_of_all(small: Gridshell) -> None:
 
 
 def rigidity_matrix(model: FrameModel) -> Floats:
-    """Return one row (6 n) for each way in which members, arms, pins and supports do not give at all.
+    """Return one row (6 n) for each thing that does not give when members are bars between pins.
 
-    Planks do not stretch and do not bend about their strong axis; they bend about the weak one and twist freely. Rotations
-    are scaled by a bay's length. Written from the data of the model, without the engine.
+    Planks do not stretch; arms, studs and supports are rigid; bending and torsion are free. Rotations are scaled by a
+    bay's length. Written from the data of the model, without the engine.
     """
     place = {node.mark: i for i, node in enumerate(model.nodes)}
     points = np.array([node.point for node in model.nodes])
@@ -152,7 +152,7 @@ def rigidity_matrix(model: FrameModel) -> Floats:
         line = np.zeros((len(points), 6))
         for node, shift, turn in terms:
             line[node, :3] += shift
-            line[node, 3:] += turn / ARM
+            line[node, 3:] += turn / BAY
         rows.append(line.ravel())
 
     none, axes = np.zeros(3), np.eye(3)
@@ -160,16 +160,8 @@ def rigidity_matrix(model: FrameModel) -> Floats:
         i, j = place[item.start], place[item.end]
         a, b = np.array(item.start_offset), np.array(item.end_offset)
         chord = points[j] + b - points[i] - a
-        length = float(np.linalg.norm(chord))
-        x = chord / length
-        z = np.array(item.direction) - (np.array(item.direction) @ x) * x
-        z /= np.linalg.norm(z)
-        y = np.cross(z, x)
-        row((j, x, np.cross(b, x)), (i, -x, -np.cross(a, x)))
-        about, across = (y, z) if item.section.inertia_y > item.section.inertia_z else (z, -y)
-        slope = across * ARM / length
-        for end in (i, j):
-            row((end, none, ARM * about), (j, slope, np.cross(b, slope)), (i, -slope, -np.cross(a, slope)))
+        along = chord / np.linalg.norm(chord)
+        row((j, along, np.cross(b, along)), (i, -along, -np.cross(a, along)))
     for link in model.links:
         m, s = place[link.master], place[link.slave]
         arm = points[s] - points[m]
@@ -177,30 +169,22 @@ def rigidity_matrix(model: FrameModel) -> Floats:
         for axis in axes:
             row((s, axis, none), (m, -axis, -np.cross(arm, axis)))
         for axis in square:
-            row((s, none, ARM * axis), (m, none, -ARM * axis))
+            row((s, none, BAY * axis), (m, none, -BAY * axis))
     for support in model.supports:
         for dof in support.held:
-            k = DOFS.index(dof)
-            row((place[support.node], axes[k % 3] * (k < 3), ARM * axes[k % 3] * (k > 2)))
+            row((place[support.node], axes[DOFS.index(dof)], none))
     return np.array(rows)
-
-
-def without_weak_stiffness(section: FrameSection, share: float) -> FrameSection:
-    strong = max(section.inertia_y, section.inertia_z)
-    weak = [value if value == strong else share * value for value in (section.inertia_y, section.inertia_z)]
-    return FrameSection(section.area, share * section.torsion, *weak)
 
 
 @pytest.mark.parametrize(
     "fixed", [(), ("E",), ("S1-G-03",), ("S1-G-01", "S1-G-06"), ("E", "S1-G-02", "S1-G-05"), ("E", "G")]
 )
-def test_soft_modes_are_the_null_space_of_the_rigidity_matrix_when_weak_stiffness_vanishes(
+def test_soft_modes_are_the_null_space_of_the_rigidity_matrix_when_bending_and_torsion_vanish(
     small: Gridshell, fixed: tuple[str, ...]
 ) -> None:
-    """The shell on its feet; torsion and weak bending 1e-13 of what they are, against a dense SVD.
+    """The shell on its feet; bending and torsion 1e-15 of what they are, against a dense SVD of bars and pins.
 
-    Beams on a smooth surface are mechanisms but for their curvature within a bay: such motions strain by 1e-4 of others
-    and count as free on both sides. The gap above them is seven in the singular values, its square in the eigenvalues.
+    The smallest singular value that is not 0 is 1e-2 of the largest: no tolerance decides.
     """
     shell = small.shells[0]
     screwed = [mark for name in fixed for mark in (flat_planks(shell, name) or (name,))]
@@ -209,14 +193,21 @@ def test_soft_modes_are_the_null_space_of_the_rigidity_matrix_when_weak_stiffnes
     held = tuple(Support(node, ("x", "y", "z")) for foot in feet for node in frame.beam_nodes[foot])
     model = replace(frame.model, supports=held)
     matrix = rigidity_matrix(model)
-    singular = np.sort(np.linalg.svd(matrix, compute_uv=False))
-    null = int(np.sum(singular < 1e-4 * singular[-1]))
-    assert singular[null] > 7.0 * singular[null - 1]
-    elements = tuple(replace(e, section=without_weak_stiffness(e.section, 1e-13)) for e in model.elements)
-    system = frame_system(replace(model, elements=elements))
+    singular = np.linalg.svd(matrix, compute_uv=False)
+    rank = int(np.sum(singular > 1e-9 * singular[0]))
+    assert singular[rank - 1] > 5e-3 * singular[0]
+    bars = tuple(
+        replace(item, section=FrameSection(item.section.area, *(1e-15 * v for v in bendings(item.section))))
+        for item in model.elements
+    )
+    system = frame_system(replace(model, elements=bars))
     stiffness = against_unknowns(system, full_stiffness(system)).toarray()
     eigenvalues = np.linalg.eigvalsh(stiffness[np.ix_(system.free, system.free)])
-    assert soft_mode_count(eigenvalues.tolist(), 2e-5) == null
+    assert soft_mode_count(eigenvalues.tolist(), 1e-3) == matrix.shape[1] - rank
+
+
+def bendings(section: FrameSection) -> tuple[float, float, float]:
+    return section.torsion, section.inertia_y, section.inertia_z
 
 
 def test_the_hoisted_vault_has_three_soft_modes_and_the_finished_one_none(vault_order: LockingOrder) -> None:
@@ -235,7 +226,7 @@ def test_the_vault_is_fixed_edges_first_then_the_side_geodesics(vault_order: Loc
     fixed = [mark for step in marks for mark in step]
     assert len(fixed) == len(set(fixed)) == 17
     lowest = [step.eigenvalues[0] for step in vault_order.steps]
-    assert all(b > a * (1.0 - 1e-6) for a, b in zip(lowest, lowest[1:], strict=False))
+    assert all(b > a * (1.0 - 1e-6) for a, b in pairwise(lowest))
     assert lowest[3] > 3.0 * lowest[2]
 
 
@@ -281,20 +272,38 @@ def test_the_plot_shows_every_step_within_its_sheet(vault_order: LockingOrder) -
     space = {"svg": "http://www.w3.org/2000/svg"}
     _, _, width, height = (float(value) for value in root.attrib["viewBox"].split())
     texts = {element.text for element in root.findall(".//svg:text", space)}
-    assert {_short for step in vault_order.steps for _short in (mark[3:] for mark in step.marks)} <= texts
+    assert {mark[3:] for step in vault_order.steps for mark in step.marks} <= texts
     circles = root.findall(".//svg:circle", space)
     assert len(circles) == 4 * len(vault_order.steps)
     assert all(0 < float(c.attrib["cx"]) < width and 0 < float(c.attrib["cy"]) < height for c in circles)
 
 
-@pytest.mark.parametrize(("hoists", "text"), [(("S1-K-001",), "^S1-K-001: it is no stud of S1")])
-def test_a_hoist_that_is_no_stud_is_refused(small: Gridshell, hoists: tuple[str, ...], text: str) -> None:
-    with pytest.raises(PlanError, match=text):
-        locking_order(small.shells[0], small.timber, hoists=hoists)
+def test_a_hoist_that_is_no_stud_is_refused(small: Gridshell) -> None:
+    with pytest.raises(PlanError, match=r"^S1-K-001: it is no stud of S1"):
+        locking_order(small.shells[0], small.timber, hoists=("S1-K-001",))
 
 
-def test_a_shell_without_geodesics_or_feet_is_refused(small: Gridshell) -> None:
+def test_a_shell_without_geodesics_is_refused(small: Gridshell) -> None:
     shell = small.shells[0]
-    bare = replace(shell, joints=tuple(joint for joint in shell.joints if joint.kind != "boundary"))
-    with pytest.raises(PlanError, match=r"^S1: .*(no joint of a beam on a lower edge plank|parts that no joint)"):
+    gone = {*flat_planks(shell, "G"), *(joint.mark for joint in shell.joints if joint.kind in ("AG", "foot", "ridge"))}
+    bare = replace(
+        shell,
+        planks=tuple(plank for plank in shell.planks if plank.mark not in gone),
+        joints=tuple(joint for joint in shell.joints if joint.kind in ("AA", "boundary")),
+        straps=(),
+        shoes=(),
+        rods=(),
+        footings=(),
+    )
+    named = {mark for joint in bare.joints for mark in (*joint.members, *joint.fasteners)}
+    bare = replace(
+        bare,
+        blocks=tuple(block for block in bare.blocks if block.mark in named),
+        bolts=tuple(bolt for bolt in bare.bolts if bolt.mark in named),
+        screws=tuple(screw for screw in bare.screws if screw.mark in named),
+        mullions=(),
+        strips=(),
+        clamps=(),
+    )
+    with pytest.raises(PlanError, match=r"^S1: it has no geodesic"):
         locking_order(bare, small.timber)

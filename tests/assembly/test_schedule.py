@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aag_cad.design import Design, design_text, parse_design
-from aag_cad.design_sections import Minutes
+from aag_cad.design_making import Minutes
 from aag_cad.errors import DesignError
 from aag_cad.parts.model import Gridshell
 from assembly.durations import person_minutes, step_minutes, step_works

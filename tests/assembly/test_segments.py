@@ -18,9 +18,10 @@ from aag_cad.design import load_design
 from aag_cad.mechanics.fastener_spacing import bolt_distances
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.mesh import frame_matrix, shell_mesh
-from aag_cad.parts.model import Bolt, Gridshell, Strap, Stud, shell_parts
+from aag_cad.parts.model import Gridshell, shell_parts
 from aag_cad.parts.quantities import mass
 from aag_cad.pipeline import gridshell_of
+from aag_cad.units import Floats
 from assembly.boxes import best_pose, turned_rectangle
 from assembly.errors import PlanError
 from assembly.graph_partition import partition_graph
@@ -99,12 +100,25 @@ def weigher(masses: list[int], widths: list[int], load: int, room: int) -> Weigh
     return weigh
 
 
+def asked(weigh: Weigh) -> tuple[Callable[[int, int], bool], Callable[[int, int], int]]:
+    """Whether there may be a run, and its mass: which is asked only of a run that may be."""
+
+    def mass_of(a: int, b: int) -> int:
+        found = weigh(a, b)
+        assert found is not None
+        return found
+
+    return lambda a, b: weigh(a, b) is not None, mass_of
+
+
 def test_every_small_chain_is_cut_as_by_brute_force() -> None:
     for bays in range(1, 6):
         for masses in itertools.product((1, 2, 3), repeat=bays):
             for inner in itertools.product((0, 1), repeat=bays - 1):
                 cost, weigh = [0, *inner, 0], weigher(list(masses), [0] * bays, 4, 0)
-                assert best_chain(range(bays + 1), cost.__getitem__, weigh) == brute_chain(bays + 1, cost, weigh)
+                assert best_chain(range(bays + 1), cost.__getitem__, *asked(weigh)) == brute_chain(
+                    bays + 1, cost, weigh
+                )
 
 
 bays = st.lists(st.tuples(st.integers(0, 40), st.integers(0, 9), st.integers(0, 5)), min_size=1, max_size=9)
@@ -116,7 +130,7 @@ def test_chains_of_random_masses_and_sizes_are_cut_as_by_brute_force(
 ) -> None:
     masses, widths, costs = (list(values) for values in zip(*chain, strict=True))
     cost, weigh = [*costs, 0], weigher(masses, widths, load, room)
-    assert best_chain(range(len(cost)), cost.__getitem__, weigh) == brute_chain(len(cost), cost, weigh)
+    assert best_chain(range(len(cost)), cost.__getitem__, *asked(weigh)) == brute_chain(len(cost), cost, weigh)
 
 
 @settings(max_examples=60)
@@ -127,7 +141,7 @@ def test_rings_of_random_masses_and_sizes_are_cut_as_by_brute_force(
     masses, widths, cost = (list(values) for values in zip(*ring, strict=True))
     n, weigh = len(ring), weigher(masses, widths, load, room)
     whole = weigh(0, n)
-    assert best_ring(range(n), n, lambda stop: cost[stop % n], weigh, whole) == brute_ring(n, cost, weigh, whole)
+    assert best_ring(range(n), n, lambda stop: cost[stop % n], *asked(weigh)) == brute_ring(n, cost, weigh, whole)
 
 
 @given(bays, st.integers(0, 120))
@@ -153,9 +167,9 @@ def test_no_turn_in_the_plane_fills_a_rectangle_less(seed: int, width: float) ->
     filling, angle = turned_rectangle(points, 5.0, width)
     turns = np.linspace(0.0, math.pi, 2001)
 
-    def filled(turn: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
+    def filled(turn: Floats) -> Floats:
         c, s = np.cos(turn), np.sin(turn)
-        return np.maximum(np.ptp(points @ [c, s], axis=0) / 5.0, np.ptp(points @ [-s, c], axis=0) / width)
+        return np.asarray(np.maximum(np.ptp(points @ [c, s], axis=0) / 5.0, np.ptp(points @ [-s, c], axis=0) / width))
 
     assert filled(np.array([angle]))[0] == pytest.approx(filling, rel=1e-9)
     assert filling <= filled(turns).min() + 1e-9
@@ -193,10 +207,9 @@ def test_the_vault_travels_in_three_shells_of_the_papers_weight(gridshell: Grids
         assert segment.fits
 
 
-def test_alike_shells_are_cut_alike(gridshell: Gridshell, lorry: Segmentation) -> None:
-    plan = segments(gridshell, LORRY)
+def test_alike_shells_are_cut_alike(gridshell: Gridshell) -> None:
+    plan = segments(gridshell, by_mass(135.0))
     assert [segment.name for segment in plan.segments] == [f"S{i}.{k}" for i in (1, 2, 3) for k in (1, 2, 3)]
-    assert len(plan.splices) == 3 * len(lorry.splices)
     for first, second in zip(plan.segments[:3], plan.segments[3:6], strict=True):
         assert [m.partition("-")[2] for m in first.geodesics] == [m.partition("-")[2] for m in second.geodesics]
         assert first.pose.size == pytest.approx(second.pose.size, abs=1e-6)
@@ -205,7 +218,8 @@ def test_alike_shells_are_cut_alike(gridshell: Gridshell, lorry: Segmentation) -
 def carried_joints(single: Gridshell) -> Iterator[str]:
     """Marks of what the joints of a shell hold that are not made on site anyway: blocks, studs, straps, fasteners."""
     shell = single.shells[0]
-    hubs = {part.mark for part in (*shell.studs, *shell.blocks, *shell.straps)}
+    hubs = {stud.mark for stud in shell.studs} | {block.mark for block in shell.blocks}
+    hubs |= {strap.mark for strap in shell.straps}
     for joint in shell.joints:
         if joint.kind not in ("foot", "footing", "cover"):
             yield from (mark for mark in (*joint.members, *joint.fasteners) if mark in hubs or mark in joint.fasteners)
@@ -283,7 +297,7 @@ def test_what_lies_between_two_cuts_also_lies_between_wider_ones(item: Divisible
         inner, i, j = run_between(item, a, b), stops.index(a), stops.index(b)
         for c, d in ((stops[i - 1], b), (a, stops[j + 1])):
             outer = run_between(item, c, d)
-            assert {m for m in inner.parts if "-W" not in m} <= {m for m in outer.parts}
+            assert {m for m in inner.parts if "-W" not in m} <= set(outer.parts)
             assert outer.mass > inner.mass - 1e-9
 
 
@@ -369,14 +383,19 @@ def test_a_narrow_lorry_says_what_must_change_and_what_it_says_is_enough(single:
     assert best_stops(divisible(single.shells[0], single.timber), replace(NARROW, height=height)) == ()
 
 
-def test_a_box_that_holds_no_geodesic_with_its_beams_is_a_problem(single: Gridshell) -> None:
-    plan = segments(single, Limits(12000.0, 600.0, 600.0, 3000.0))
+def test_a_crane_too_weak_for_one_geodesic_with_its_beams_is_a_problem(single: Gridshell) -> None:
+    plan = segments(single, replace(WIDE, crane=10.0))
     (segment,) = plan.segments
     assert not segment.fits
-    assert segment.over[1] > 0.0
+    assert segment.over[1] < 0.0 < segment.over[3]
     (problem,) = plan.problems
-    assert "S1: no cuts along its geodesics make it fit 12000 x 600 x 600 mm" in problem
+    assert "S1: no cuts along its geodesics make it fit 12000 x 4000 x 4000 mm and 10 kg" in problem
     assert "alone with the beams beside it takes" in problem
+    assert f"it travels whole with a load of {math.ceil(segment.mass)} kg" in problem
+
+
+def test_a_box_shorter_than_the_geodesics_is_a_problem(item: Divisible) -> None:
+    assert best_stops(item, Limits(2000.0, 2000.0, 2000.0, 3000.0)) is None
 
 
 def test_a_crane_limits_the_mass_as_the_lorry_does(item: Divisible) -> None:
@@ -394,13 +413,13 @@ def test_a_closed_ring_is_opened_by_two_cuts_at_least(column: Gridshell) -> None
     assert whole.centre[:2] == pytest.approx((0.0, 0.0), abs=5.0)
 
 
-def test_corners_cover_the_whole_shell(single: Gridshell, item: Divisible) -> None:
-    corners = run_between(item, 2, 29).corners
-    meshes = [shell_mesh(p).vertices for p in shell_parts(single.shells[0]) if isinstance(p, Stud | Bolt | Strap)]
-    marks = {mark for joint in item.shell.joints if joint.kind in ("AA", "AG", "boundary") for mark in joint.fasteners}
-    held = [shell_mesh(p).vertices for p in item.shell.bolts if p.mark in marks]
-    assert corners.min(axis=0) == pytest.approx(np.concatenate([corners, *held]).min(axis=0))
-    assert len(meshes) > len(held)
+def test_corners_reach_as_far_as_the_meshes_of_all_that_travels(single: Gridshell, item: Divisible) -> None:
+    run = run_between(item, 2, 29)
+    meshes = [shell_mesh(part).vertices for part in shell_parts(single.shells[0]) if part.mark in set(run.parts)]
+    points = np.concatenate(meshes)
+    # Both sample planks, at 60 and at 120 mm: the sagitta of 120 mm at 1.7 m is 1.1 mm.
+    assert run.corners.min(axis=0) == pytest.approx(points.min(axis=0), abs=1.1)
+    assert run.corners.max(axis=0) == pytest.approx(points.max(axis=0), abs=1.1)
 
 
 def test_rows_and_cards_are_printed_from_the_plan(lorry: Segmentation) -> None:
@@ -414,6 +433,14 @@ def test_rows_and_cards_are_printed_from_the_plan(lorry: Segmentation) -> None:
     assert all(str(card["room"]).startswith("fits; ") for card in cards)
 
 
+def named(numbers: "nx.Graph[int]") -> "nx.Graph[str]":
+    """A graph with the nodes 01, 02 and so on in place of 0, 1..."""
+    graph: nx.Graph[str] = nx.Graph()
+    graph.add_nodes_from(f"{i + 1:02d}" for i in numbers)
+    graph.add_edges_from((f"{a + 1:02d}", f"{b + 1:02d}") for a, b in numbers.edges())
+    return graph
+
+
 def placed(graph: "nx.Graph[str]") -> "nx.Graph[str]":
     """A graph with a part of 1 kg every metre along x, in the order of its nodes."""
     for i, node in enumerate(sorted(graph)):
@@ -422,15 +449,15 @@ def placed(graph: "nx.Graph[str]") -> "nx.Graph[str]":
 
 
 def test_a_row_of_parts_is_parted_where_it_is_thinnest() -> None:
-    row = placed(nx.relabel_nodes(nx.barbell_graph(5, 0), {i: f"part {i}" for i in range(10)}))
+    row = placed(named(nx.barbell_graph(5, 0)))
     groups = partition_graph(row, by_mass(5.0))
-    assert groups == (frozenset(f"part {i}" for i in range(5)), frozenset(f"part {i}" for i in range(5, 10)))
+    assert groups == (frozenset(["01", "02", "03", "04", "05"]), frozenset(["06", "07", "08", "09", "10"]))
 
 
 @settings(max_examples=25)
 @given(st.integers(1, 30), st.integers(0, 1000), st.integers(2, 9))
 def test_every_part_of_a_graph_is_in_one_group_that_fits(count: int, seed: int, load: int) -> None:
-    graph = placed(nx.relabel_nodes(nx.gnp_random_graph(count, 0.2, seed=seed), {i: f"{i:02d}" for i in range(count)}))
+    graph = placed(named(nx.gnp_random_graph(count, 0.2, seed=seed)))
     limits = Limits(8000.0, 1000.0, 1000.0, float(load))
     groups = partition_graph(graph, limits)
     assert sorted(itertools.chain(*groups)) == sorted(graph)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from aag_cad.audit_facade import FACADE_CHECKS, FacadeCheck
+from aag_cad.mechanics.cover import FACADE_CHECKS, FacadeCheck
 from aag_cad.design import Design, load_design
 from aag_cad.errors import DesignError
 from aag_cad.geometry.framed import frames_at

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from aag_cad.design import Design, load_design
-from aag_cad.design_sections import Stock
+from aag_cad.design_making import Stock
 from aag_cad.parts.model import Gridshell, Hole, Plank
 from aag_cad.pipeline import gridshell_of
 from aag_cad.shop.finger_joints import board_rules, joint_stations, plank_pieces

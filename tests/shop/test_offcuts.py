@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from aag_cad.design import Design
-from aag_cad.design_sections import Stock
+from aag_cad.design_making import Stock
 from aag_cad.errors import FileError
 from aag_cad.parts.model import Blank, CrossSection, Gridshell, Hole
 from aag_cad.shop.offcuts import OldPlank, barred_starts, fitting_planks, read_offcuts, reused_planks
