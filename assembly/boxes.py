@@ -128,7 +128,8 @@ def best_pose(points: Floats, room: Vector, enough: float = 0.0) -> Pose:
         pose, step = _tilted(corners, start, limits), _FIRST_STEP
         while step > _LAST_STEP and pose.filling > enough:
             up, (x, y) = np.array(pose.axes[2]), _plan_axes(np.array(pose.axes[2]))
-            ways = [math.cos(step) * up + math.sin(step) * way for way in (x, y, -x, -y)]
+            around = [math.cos(k * math.pi / 4) * x + math.sin(k * math.pi / 4) * y for k in range(8)]
+            ways = [math.cos(step) * up + math.sin(step) * way for way in around]
             nearer = min((_tilted(corners, way, limits) for way in ways), key=lambda p: p.filling)
             if nearer.filling < pose.filling - 1e-9:
                 pose = nearer

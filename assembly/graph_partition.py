@@ -83,8 +83,9 @@ def partition_graph(graph: "nx.Graph[str]", limits: Limits) -> tuple[frozenset[s
 
     Any networkx graph whose nodes carry ``mass_kg`` and ``position`` (mm), such as ``assembly.graph.assembly_graph``.
     The size is that of the positions: where parts stand out past them, give limits less by that. Halves of equal mass
-    are exchanged node by node (Kernighan and Lin), which keeps their node counts, where no half
-    outgrows the transport by it; groups come in the order of their first marks. PlanError if a node lacks an attribute or is too heavy by itself.
+    are exchanged node by node (Kernighan and Lin), which keeps their node counts, unless a half outgrows the transport
+    by it. Groups come in the order of their first marks. PlanError if a node lacks an attribute or is too heavy by
+    itself.
     """
     for node in sorted(graph):
         missing = sorted({"mass_kg", "position"} - set(graph.nodes[node]))

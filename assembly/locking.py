@@ -25,6 +25,7 @@ from assembly.locking_model import (
     modes_of,
     released_frame,
     sag_of,
+    softest_of,
     state_modes,
     state_sag,
 )
@@ -36,7 +37,6 @@ SOFT = 0.5
 SAG_LIMIT = 20.0
 MODES = 6
 MOST_PROPS = 4
-_RANKING_TOLERANCE = 1e-6
 _DIGITS = 6
 
 LOCKING_HEADER = (
@@ -137,7 +137,7 @@ def best_order(groups: Sequence[Group], value: Value, first: Sequence[Group] = (
 def lowest_eigenvalue(model: LockingModel) -> Value:
     """Return the function that gives the lowest eigenvalue, 1/s2, by the groups of planks that are fixed.
 
-    It remembers what it has worked out, and starts each search from the softest mode of the state before.
+    It remembers what it has worked out, and starts each search from the softest modes of the state before.
     """
     known: dict[frozenset[Group], float] = {}
     guess: list[Floats] = []
@@ -145,9 +145,8 @@ def lowest_eigenvalue(model: LockingModel) -> Value:
     def value(groups: frozenset[Group]) -> float:
         if groups not in known:
             fixed = tuple(chain.from_iterable(sorted(groups)))
-            values, modes = modes_of(model, fixed, 2, guess[-1] if guess else None, _RANKING_TOLERANCE)
-            guess[:] = [modes[:, 0]]
-            known[groups] = float(values[0])
+            known[groups], modes = softest_of(model, fixed, guess[-1] if guess else None)
+            guess[:] = [modes]
         return known[groups]
 
     return value

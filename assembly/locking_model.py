@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from aag_cad.mechanics.frame import held_part, mechanism_error
-from aag_cad.mechanics.frame_factor import SingularError, factor, lowest_pairs
+from aag_cad.mechanics.frame_factor import SingularError, factor, lowest_pairs, softest_pair
 from aag_cad.mechanics.frame_model import DOFS, Support
 from aag_cad.mechanics.frame_system import FrameSystem, frame_system, mass_matrix, part_stiffness
 from aag_cad.mechanics.shell_model import ShellFrame, shell_frame
@@ -28,6 +28,7 @@ GRAVITY = 9.81
 _KG_PER_TONNE = 1000.0
 _GRID = ""
 _QUARTERS = (0.25, 0.75)
+_GUESSED = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,23 +181,25 @@ def _grid_of(model: LockingModel, fixed: Collection[str]) -> GridFrame:
     return model.grids[frozenset((*model.lower, *model.upper)) & frozenset(fixed)]
 
 
-def state_modes(
-    grid: GridFrame, fixed: Collection[str], count: int, guess: Floats | None = None, tolerance: float = 0.0
-) -> tuple[Floats, Floats]:
-    """Return the lowest eigenvalues (k,), 1/s2, and modes (f, k) of a grid with planks fixed; ``guess`` (f,) of a mode.
+def state_modes(grid: GridFrame, fixed: Collection[str], count: int) -> tuple[Floats, Floats]:
+    """Return the lowest eigenvalues (k,), 1/s2, and modes (f, k) of a grid with planks fixed.
 
     FrameError that names the node if something moves that has no mass.
     """
     stiffness, active = _state(grid, fixed)
     mass = csc_array(grid.mass[active][:, active])
-    start = None if guess is None or not np.any(guess[active]) else guess[active]
     try:
-        values, modes = lowest_pairs(stiffness, mass, min(count, len(active)), start, tolerance)
+        values, modes = lowest_pairs(stiffness, mass, min(count, len(active)))
     except SingularError as error:
         raise mechanism_error(grid.system, _spread(grid, active, error.mode)) from error
-    whole = np.zeros((len(grid.weight), len(values)))
+    return values, _of_all(grid, active, modes)
+
+
+def _of_all(grid: GridFrame, active: Ints, modes: Floats) -> Floats:
+    """Return modes (a, k) of the active unknowns as those of all free ones (f, k)."""
+    whole = np.zeros((len(grid.weight), modes.shape[1]))
     whole[active] = modes
-    return values, whole
+    return whole
 
 
 def _spread(grid: GridFrame, active: Ints, values: Floats) -> Floats:
@@ -206,13 +209,26 @@ def _spread(grid: GridFrame, active: Ints, values: Floats) -> Floats:
     return whole
 
 
-def modes_of(
-    model: LockingModel, fixed: Collection[str], count: int, guess: Floats | None = None, tolerance: float = 0.0
-) -> tuple[Floats, Floats]:
-    """Return ``state_modes`` of a model with these planks fixed; a guess that fits another set of edges is left out."""
+def modes_of(model: LockingModel, fixed: Collection[str], count: int) -> tuple[Floats, Floats]:
+    """Return ``state_modes`` of a model with these planks fixed."""
+    return state_modes(_grid_of(model, fixed), fixed, count)
+
+
+def softest_of(model: LockingModel, fixed: Collection[str], guess: Floats | None) -> tuple[float, Floats]:
+    """Return the lowest eigenvalue, 1/s2, and the softest modes (f, k), from a guess of these if there is one that fits.
+
+    A guess fits the state of another set of planks, as long as the edge planks are the same.
+    """
     grid = _grid_of(model, fixed)
-    fits = guess is not None and len(guess) == len(grid.weight)
-    return state_modes(grid, fixed, count, guess if fits else None, tolerance)
+    stiffness, active = _state(grid, fixed)
+    if guess is None or len(guess) != len(grid.weight):
+        values, modes = state_modes(grid, fixed, _GUESSED)
+        return float(values[0]), modes
+    try:
+        value, modes = softest_pair(stiffness, csc_array(grid.mass[active][:, active]), guess[active])
+    except SingularError as error:
+        raise mechanism_error(grid.system, _spread(grid, active, error.mode)) from error
+    return value, _of_all(grid, active, modes)
 
 
 def sag_of(model: LockingModel, fixed: Collection[str], limit: float, most: int) -> Sag:

@@ -24,7 +24,7 @@ class Cuts:
 
 
 def _fewest(stops: Sequence[int], cost: Cost, fits: Fits) -> dict[int, tuple[int, int]]:
-    """Return (pieces, cut beams) of the best cuts from each stop to the last, for the stops from which there are any."""
+    """Return (pieces, cut beams) of the best cuts from each stop to the last; stops without any are left out."""
     last = stops[-1]
     rest = {last: (0, 0)}
     for i in range(len(stops) - 2, -1, -1):

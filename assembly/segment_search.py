@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
+import numpy as np
+
 from aag_cad.units import Vector
 from assembly.boxes import Pose, best_pose
 from assembly.partition import best_chain, best_ring
@@ -47,7 +49,11 @@ def pose_in(run: Run, limits: Limits, enough: float = 0.0) -> Pose:
 
 def fits(run: Run, limits: Limits) -> bool:
     """Return whether a run is light enough and a pose was found in which it fits."""
-    return run.mass <= limits.load and pose_in(run, limits, 1.0).filling <= 1.0 + _ROUNDING
+    if run.mass > limits.load:
+        return False
+    if float(np.linalg.norm(np.ptp(run.corners, axis=0))) <= min(limits.room):
+        return True
+    return pose_in(run, limits, 1.0).filling <= 1.0 + _ROUNDING
 
 
 def furthest(stops: Sequence[int], count: int, fitting: Callable[[int, int], bool]) -> dict[int, int]:
@@ -100,10 +106,7 @@ def best_stops(item: Divisible, limits: Limits) -> tuple[int, ...] | None:
     def cost(stop: int) -> int:
         return sum(splice.kind == "block" for splice in run_splices(item, stop))
 
-    if grid.ring:
-        best = best_ring(stops, turn, cost, allowed, grams)
-    else:
-        best = best_chain(stops, cost, allowed, grams)
+    best = best_ring(stops, turn, cost, allowed, grams) if grid.ring else best_chain(stops, cost, allowed, grams)
     return None if best is None else best.stops
 
 

@@ -181,7 +181,7 @@ def _hopeless(item: Divisible, limits: Limits, wish: str) -> str:
     best_of: dict[str, tuple[float, str]] = {}
     for ends in smallest_runs(item):
         run = run_between(item, *ends)
-        pose = pose_in(run, limits)
+        pose = pose_in(run, limits, 1.0)
         words = f"{run.geodesics[0]} alone with the beams beside it takes {_box(pose)} and {run.mass:.0f} kg"
         filling = max(pose.filling, run.mass / limits.load)
         best_of[run.geodesics[0]] = min(best_of.get(run.geodesics[0], (math.inf, "")), (filling, words))

@@ -152,7 +152,7 @@ def lowest_modes(model: FrameModel, count: int, masses: Floats | None = None) ->
     else:
         mass = held_part(system, mass_matrix(system, masses / _KG_PER_TONNE))
     try:
-        values, modes = lowest_pairs(stiffness, mass, min(count, size), None)
+        values, modes = lowest_pairs(stiffness, mass, min(count, size))
     except SingularError as error:
         raise mechanism_error(system, _spread(system, error.mode)) from error
     return FrameModes(values, (system.transform @ _spread(system, modes)).reshape(len(system.points), 6, -1))

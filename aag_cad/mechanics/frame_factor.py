@@ -17,6 +17,8 @@ RESIDUAL_LIMIT = 1e-6
 _DENSE = 60
 _PERTURBED = 1e-9
 _NO_SHIFT = 1e-10
+_STANDS_STILL = 1e-8
+_MOST_ROUNDS = 60
 
 Solve = Callable[[Floats], Floats]
 
@@ -92,13 +94,11 @@ def _dense_modes(stiffness: csc_array, mass: csc_array, count: int, shift: float
     return 1.0 / flexibility[order] - shift, modes[:, order]
 
 
-def lowest_pairs(
-    stiffness: csc_array, mass: csc_array, count: int, start: Floats | None = None, tolerance: float = 0.0
-) -> tuple[Floats, Floats]:
+def lowest_pairs(stiffness: csc_array, mass: csc_array, count: int) -> tuple[Floats, Floats]:
     """Return the lowest eigenvalues (k,) of K v = lambda M v and their vectors (u, k), v.T M v = 1; k <= count.
 
     Mechanisms come out as eigenvalues of about 0, within 1e-10 of the mean of K over M. SingularError if something that
-    moves without force has no mass either. ``start`` (u,) is a guess of the softest mode.
+    moves without force has no mass either.
     """
     weights = mass.diagonal()
     heavy = weights > 0.0
@@ -110,10 +110,28 @@ def lowest_pairs(
     else:
         lu = factor(csc_array(stiffness + shift * mass)).lu
         inverse = LinearOperator((size, size), matvec=lu.solve, dtype=np.float64)
-        values, modes = eigsh(
-            stiffness, k=count, M=mass, sigma=-shift, OPinv=inverse, tol=tolerance,
-            v0=start_vector(size) if start is None else start,
-        )  # fmt: skip
+        values, modes = eigsh(stiffness, k=count, M=mass, sigma=-shift, OPinv=inverse, v0=start_vector(size))
     order = np.argsort(values, kind="stable")
     values, modes = values[order], modes[:, order]
     return values, modes / np.sqrt(np.sum(modes * (mass @ modes), axis=0))
+
+
+def softest_pair(stiffness: csc_array, mass: csc_array, guess: Floats) -> tuple[float, Floats]:
+    """Return the lowest eigenvalue of K v = lambda M v for a K that holds, and a better guess (u, k) of the softest modes.
+
+    Subspace iteration (Bathe and Wilson 1972) from modes (u, k) of a like frame and one vector more, so that a mode which
+    the guess lacks is found as well; until the eigenvalue stands still to 1e-8. SingularError for a mechanism.
+    """
+    lu = factor(stiffness).lu
+    block = mass @ np.column_stack([guess, start_vector(len(guess))])
+    last = np.inf
+    for _ in range(_MOST_ROUNDS):
+        moved = lu.solve(block)
+        loaded = mass @ moved
+        values, turn = eigh(moved.T @ block, moved.T @ loaded)
+        block, lowest = loaded @ turn, float(values[0])
+        if abs(last - lowest) < _STANDS_STILL * lowest:
+            return lowest, np.asarray(moved @ turn)[:, : guess.shape[1]]
+        last = lowest
+    values, modes = lowest_pairs(stiffness, mass, guess.shape[1])
+    return float(values[0]), modes

@@ -22,7 +22,7 @@ from aag_cad.parts.model import Gridshell, shell_parts
 from aag_cad.parts.quantities import mass
 from aag_cad.pipeline import gridshell_of
 from aag_cad.units import Floats
-from assembly.boxes import best_pose, turned_rectangle
+from assembly.boxes import best_pose, hull_points, turned_rectangle
 from assembly.errors import PlanError
 from assembly.graph_partition import partition_graph
 from assembly.partition import Cuts, best_chain, best_ring
@@ -183,12 +183,12 @@ def test_a_turned_box_fits_the_room_of_its_own_size() -> None:
 
 
 def test_no_random_pose_of_a_segment_leaves_more_room(item: Divisible) -> None:
-    corners = run_between(item, 2, 11).corners
+    corners = hull_points(run_between(item, 2, 11).corners)
     found = best_pose(corners, LORRY.room)
     axes = Rotation.random(2000, random_state=1).as_matrix()
     fillings = [
         max(size / room for size, room in zip(np.ptp(corners @ turn, axis=0), LORRY.room, strict=True))
-        for turn in axes[:, :, [0, 1, 2]]
+        for turn in axes
     ]
     assert found.filling < min(fillings)
 
@@ -408,8 +408,9 @@ def test_a_closed_ring_is_opened_by_two_cuts_at_least(column: Gridshell) -> None
     owned = [mark for segment in plan.segments for mark in segment.geodesics]
     assert sorted(owned) == sorted(p.mark for p in column.shells[0].planks if p.family == "G")
     check_each_part_once(column, plan)
-    whole = segments(column, by_mass(1000.0)).segments[0]
-    # A ring of equal geodesics hangs on its axis; its blocks and bolts are turned a little to one side.
+    whole = run_between(divisible(column.shells[0], column.timber), 2, 2 + 2 * 24)
+    assert not whole.pieces
+    # The centre of gravity of a closed ring is on its axis; bolts and screws are turned to one side, which is little.
     assert whole.centre[:2] == pytest.approx((0.0, 0.0), abs=5.0)
 
 
@@ -454,8 +455,8 @@ def test_a_row_of_parts_is_parted_where_it_is_thinnest() -> None:
     assert groups == (frozenset(["01", "02", "03", "04", "05"]), frozenset(["06", "07", "08", "09", "10"]))
 
 
-@settings(max_examples=25)
-@given(st.integers(1, 30), st.integers(0, 1000), st.integers(2, 9))
+@settings(max_examples=10)
+@given(st.integers(1, 20), st.integers(0, 1000), st.integers(2, 9))
 def test_every_part_of_a_graph_is_in_one_group_that_fits(count: int, seed: int, load: int) -> None:
     graph = placed(named(nx.gnp_random_graph(count, 0.2, seed=seed)))
     limits = Limits(8000.0, 1000.0, 1000.0, float(load))

@@ -39,7 +39,7 @@ def _of_shell(shell: Shell, marks: set[str], joints: tuple[Joint, ...]) -> Shell
 
 
 def sampled(gridshell: Gridshell, of_a_kind: int = OF_A_KIND) -> Gridshell:
-    """Return a gridshell with some joints of each kind in each shell and between shells, and the parts that they hold."""
+    """Return a gridshell with some joints of each kind in each shell and between shells, and the parts they hold."""
     ridge = _some(gridshell.joints, of_a_kind)
     held = _held(ridge)
     return replace(
@@ -61,7 +61,7 @@ def sampled_steps(gridshell: Gridshell, sample: Gridshell) -> tuple[Step, ...]:
             marks=tuple(mark for mark in step.marks if mark in kept),
             assemblies=tuple(mark for mark in step.assemblies if mark in kept),
         )
-        for step in plan_of(gridshell, 6, 25.0).steps
+        for step in plan_of(gridshell, 4, 25.0).steps
     )
 
 

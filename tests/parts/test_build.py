@@ -115,8 +115,13 @@ def test_the_timber_is_that_of_the_design_with_the_values_of_its_class(design: D
 
 
 def test_a_vault_of_more_shells_repeats_the_same_shell(design: Design, network: CurveNetwork) -> None:
-    """The network is that of one shell: with five of them the parts are the same, 72 degrees apart."""
-    five = replace_shell_count(design, 5)
+    """The network is that of one shell: with five of them the parts are the same, 72 degrees apart.
+
+    Cropped for three it reaches over the ridge planes of five: no cover, and few places for blades are tried.
+    """
+    facade = design.facade.model_copy(update={"cover": False})
+    ridge = design.ridge.model_copy(update={"blades": "equal", "blade_spacing": 1e5})
+    five = replace_shell_count(design.model_copy(update={"facade": facade, "ridge": ridge}), 5)
     built = gridshell_from(five, network)
     assert [shell.mark for shell in built.shells] == ["S1", "S2", "S3", "S4", "S5"]
     np.testing.assert_allclose(
