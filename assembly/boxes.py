@@ -11,7 +11,7 @@ from aag_cad.units import Floats, Vector, vector
 
 _TILTS = 400
 _TURNS = 18
-_STARTS = 4
+_STARTS = 3
 _FIRST_STEP, _LAST_STEP = math.radians(4.0), math.radians(0.02)
 _GOLDEN = math.pi * (3.0 - math.sqrt(5.0))
 

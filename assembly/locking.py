@@ -16,7 +16,7 @@ import numpy as np
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.units import Floats
-from assembly.drawing import Style, circle, group, line, polygon, rectangle, svg, text
+from assembly.drawing import CHARACTER, Style, circle, group, line, polygon, rectangle, svg, text
 from assembly.locking_model import (
     LockingModel,
     Prop,
@@ -310,6 +310,7 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 120.0, 30.0, 60.0, 190.0
 _SIZE, _SMALL = 30.0, 24.0
 _SHOWN = 4
 _LINES = 3
+_LETTERS = 5
 
 
 def _scale(top: float) -> tuple[float, list[float]]:
@@ -332,12 +333,13 @@ def _axes(x: Floats, order: LockingOrder, ticks: Sequence[float], y: Callable[[f
     for tick in ticks:
         yield line(np.array([(_LEFT, y(tick)), (right, y(tick))]), Style(stroke="#999", width=1.0))
         yield text(f"{tick:g}", _LEFT - 14, y(tick), _SMALL, "end")
+    size = min(_SMALL, float(x[1] - x[0]) / (_LETTERS * CHARACTER))
     for place, step, number in zip(x.tolist(), order.steps, range(len(order.steps)), strict=True):
         yield text(str(number), place, y(0.0) + 30, _SIZE, bold=True)
         names = [_short(mark) for mark in step.marks]
         names = names if len(names) <= _LINES else [*names[: _LINES - 1], f"+{len(names) - _LINES + 1}"]
         for i, name in enumerate(names):
-            yield text(name, place, y(0.0) + 68 + 30 * i, _SMALL)
+            yield text(name, place, y(0.0) + 68 + 30 * i, size)
 
 
 def locking_svg(order: LockingOrder, words: PlotWords | None = None) -> str:

@@ -215,7 +215,7 @@ def modes_of(model: LockingModel, fixed: Collection[str], count: int) -> tuple[F
 
 
 def softest_of(model: LockingModel, fixed: Collection[str], guess: Floats | None) -> tuple[float, Floats]:
-    """Return the lowest eigenvalue, 1/s2, and the softest modes (f, k), from a guess of these if there is one that fits.
+    """Return the lowest eigenvalue, 1/s2, and the softest modes (f, k), from a guess of these if one fits.
 
     A guess fits the state of another set of planks, as long as the edge planks are the same.
     """

@@ -17,6 +17,7 @@ from aag_cad.network.build import shell_network
 from aag_cad.network.edges import top_coordinate
 from aag_cad.parts.build import gridshell_from
 from aag_cad.pipeline import chart_of, optimised_design, optimised_mesh, web_of, worked_surface, write_optimised
+from aag_cad.shop.purchases import purchases_of
 from aag_cad.web.goals import Goals
 from aag_cad.web.obj import read_web_obj, web_obj
 from aag_cad.web.optimise import optimise
@@ -48,7 +49,7 @@ def test_the_optimised_vault_has_60_degree_nodes_its_height_and_buildable_parts(
         assert np.abs(stray).max() < 2e-7
     gridshell = gridshell_from(design, network)
     assert len(gridshell.shells[0].beams) == 22
-    assert [f.text for f in audit(design, gridshell) if f.severity == "error"] == []
+    assert [f.text for f in audit(design, gridshell, purchases_of(gridshell, design)) if f.severity == "error"] == []
 
 
 def test_goals_out_of_reach_are_refused_with_the_reason() -> None:

@@ -117,10 +117,10 @@ def lowest_pairs(stiffness: csc_array, mass: csc_array, count: int) -> tuple[Flo
 
 
 def softest_pair(stiffness: csc_array, mass: csc_array, guess: Floats) -> tuple[float, Floats]:
-    """Return the lowest eigenvalue of K v = lambda M v for a K that holds, and a better guess (u, k) of the softest modes.
+    """Return the lowest eigenvalue of K v = lambda M v for a K that holds, and its softest modes (u, k) roughly.
 
-    Subspace iteration (Bathe and Wilson 1972) from modes (u, k) of a like frame and one vector more, so that a mode which
-    the guess lacks is found as well; until the eigenvalue stands still to 1e-8. SingularError for a mechanism.
+    Subspace iteration (Bathe and Wilson 1972) from modes (u, k) of a like frame and one vector more, so that a mode
+    which the guess lacks is found as well; until the eigenvalue stands still to 1e-8. SingularError for a mechanism.
     """
     lu = factor(stiffness).lu
     block = mass @ np.column_stack([guess, start_vector(len(guess))])

@@ -1,5 +1,6 @@
 """The feet of a shell: steel shoes on geodesic and bottom plank, threaded rods, precast concrete blocks (Fig. 8a)."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -85,7 +86,8 @@ def _rod(design: Design, site: _Site) -> Rod:
     stand, depth = _stand(design, probe), min(0.5 * supports.block_size[2], 8.0 * supports.rod_diameter)
     carries = depth + stand
     presses = carries + supports.shoe_thickness
-    length = presses + supports.adjustment + probe.washer_thickness + probe.nut_height + _ROD_SPARE
+    past_nut = probe.washer_thickness + probe.nut_height
+    length = float(math.ceil(presses + supports.adjustment + past_nut + _ROD_SPARE))
     clear = probe.washer_diameter / 2.0 + design.supports.shoe_thickness / 2.0 + 2.0
     x, z = _fold(design, site, stand)
     at = (

@@ -187,8 +187,7 @@ def test_no_random_pose_of_a_segment_leaves_more_room(item: Divisible) -> None:
     found = best_pose(corners, LORRY.room)
     axes = Rotation.random(2000, random_state=1).as_matrix()
     fillings = [
-        max(size / room for size, room in zip(np.ptp(corners @ turn, axis=0), LORRY.room, strict=True))
-        for turn in axes
+        max(size / room for size, room in zip(np.ptp(corners @ turn, axis=0), LORRY.room, strict=True)) for turn in axes
     ]
     assert found.filling < min(fillings)
 

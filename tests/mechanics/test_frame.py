@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from Pynite import FEModel3D
 
-from aag_cad.mechanics.frame import FrameResult, lowest_modes, static_solution
+from aag_cad.mechanics.frame import FrameResult, held_part, lowest_modes, static_solution
+from aag_cad.mechanics.frame_factor import lowest_pairs, softest_pair
 from aag_cad.mechanics.frame_model import (
     FrameElement,
     FrameError,
@@ -22,6 +23,7 @@ from aag_cad.mechanics.frame_model import (
     Support,
     rectangle_section,
 )
+from aag_cad.mechanics.frame_system import against_unknowns, frame_system, full_stiffness, mass_matrix
 from aag_cad.units import Floats, Vector
 
 # Exact elements: what is left is rounding, amplified by the ratio of the stiffnesses in a model.
@@ -252,6 +254,18 @@ def test_a_cantilever_swings_at_the_frequencies_of_euler_and_bernoulli() -> None
         unit = 1000.0 * ASH.modulus * inertia / (weight * length**3)
         for root in (1.875104, 4.694091):
             assert np.min(np.abs(found / (root**4 * unit) - 1.0)) < 2e-3
+
+
+def test_subspace_iteration_finds_the_softest_mode_from_a_guess_that_lacks_it() -> None:
+    """The guess is two higher modes of the cantilever, square to the first; Lanczos gives the value to compare with."""
+    count = 40
+    system = frame_system(chain([(50.0 * i, 0.0, 0.0) for i in range(count + 1)]))
+    stiffness = held_part(system, against_unknowns(system, full_stiffness(system)))
+    mass = held_part(system, mass_matrix(system, np.full(count + 1, 0.05)))
+    values, modes = lowest_pairs(stiffness, mass, 6)
+    found, better = softest_pair(stiffness, mass, modes[:, 3:5])
+    assert found == pytest.approx(values[0], rel=1e-7)
+    assert better.shape == (len(mass.diagonal()), 2)
 
 
 def test_a_beam_in_the_air_has_six_modes_without_stiffness() -> None:

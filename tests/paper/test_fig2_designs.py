@@ -18,6 +18,7 @@ from aag_cad.network.shells import shell_patches
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell
 from aag_cad.pipeline import Build, build, chart_of, gridshell_of
+from aag_cad.shop.purchases import purchases_of
 from aag_cad.units import Floats
 
 NAMES = ("column", "half-roof", "triple-arch", "vault")
@@ -44,7 +45,9 @@ def gridshells(designs: dict[str, Design]) -> dict[str, Gridshell]:
 @pytest.fixture(scope="module")
 def findings(designs: dict[str, Design], gridshells: dict[str, Gridshell]) -> dict[str, list[Finding]]:
     """What the audit finds in each design."""
-    return {name: audit(designs[name], gridshells[name]) for name in NAMES}
+    return {
+        name: audit(designs[name], gridshells[name], purchases_of(gridshells[name], designs[name])) for name in NAMES
+    }
 
 
 def flat_plank_points(gridshell: Gridshell) -> Floats:
