@@ -23,6 +23,7 @@ from aag_cad.units import Floats, deg_per_m
 Severity: TypeAlias = Literal["error", "warning", "note"]
 
 CONTACT = 1.0
+TOUCH = 0.25
 AXIS_TOLERANCE = 0.1
 ANGLE_SPAN_DEG = 1.0
 BOW = 1.0
@@ -106,8 +107,15 @@ def end_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
 
 
 def clash_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
-    """Yield AAG401: parts that reach more than 1 mm into each other."""
-    for clash in clashes(gridshell, CONTACT):
+    """Yield AAG401: parts that reach more than 1 mm into each other; AAG402: the deepest contact, where it is less."""
+    found = clashes(gridshell, TOUCH)
+    if found and found[0].depth <= CONTACT:
+        mark = f"{found[0].first} and {found[0].second}"
+        what = "the deepest contact of all parts, pressed into each other by"
+        yield Finding("AAG402", "note", mark, what, found[0].depth, CONTACT, "mm", "nothing to do")
+    for clash in found:
+        if clash.depth <= CONTACT:
+            break
         mark = f"{clash.first} and {clash.second}"
         x, y, z = clash.point
         where = f"run into each other at ({x:.0f}, {y:.0f}, {z:.0f}) by"

@@ -197,7 +197,7 @@ def check(design: DesignName, as_json: AsJson = False) -> None:
 @app.command()
 @_user_errors
 def plan(design: DesignName, output: Folder = None, as_json: AsJson = False) -> None:
-    """Plan the assembly: plan.json and the printed sequence."""
+    """Plan the assembly: plan.json, the schedule, and the printed sequence."""
     from aag_cad.design import load_design
 
     read = load_design(design)
@@ -205,8 +205,8 @@ def plan(design: DesignName, output: Folder = None, as_json: AsJson = False) -> 
     from aag_cad.pipeline import build as run
 
     folder = output or Path(read.project.name)
-    with _progress(len(MODEL_STAGES) + 2, as_json) as report:
-        built = run(read, folder, ("plan", "sequence"), report)
+    with _progress(len(MODEL_STAGES) + 3, as_json) as report:
+        built = run(read, folder, ("plan", "schedule", "sequence"), report)
     if as_json:
         from assembly.plan import plan_json
 

@@ -224,6 +224,7 @@ class Stock(Section):
     finger_spacing: Positive = Field(
         default=600.0, description="mm, from a finger joint to the next, a sibling's or an end"
     )
+    template_paper: Literal["roll", "a3"] = Field(default="roll", description="that drill templates are printed on")
     offcuts: Annotated[str, StringConstraints(min_length=1)] | None = Field(
         default=None,
         description="CSV file of old planks, used before boards; a relative path starts in the working folder",

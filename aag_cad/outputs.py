@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from datetime import date
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -82,7 +83,7 @@ def _write_blanks(dossier: Dossier, folder: Path) -> None:
 def _write_templates(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.templates import write_templates
 
-    write_templates(dossier.model.gridshell, folder / "templates.pdf")
+    write_templates(dossier.model.gridshell, folder / "templates.pdf", dossier.model.design.stock.template_paper)
 
 
 def _write_labels(dossier: Dossier, folder: Path) -> None:
@@ -116,6 +117,37 @@ def _write_plan(dossier: Dossier, folder: Path) -> None:
     from assembly.plan import plan_json
 
     write_text(folder / "plan.json", plan_json(dossier.plan))
+
+
+def _write_schedule(dossier: Dossier, folder: Path) -> None:
+    from aag_cad.files import write_text
+    from assembly.disassembly import disassembly_of
+    from assembly.durations import step_minutes
+    from assembly.gantt import gantt_svg
+    from assembly.ical import write_calendar
+    from assembly.plan import plan_json
+    from assembly.schedule import schedule_csv, schedule_of
+
+    gridshell, crew = dossier.model.gridshell, dossier.model.design.crew
+    minutes = step_minutes(dossier.plan, gridshell, crew.minutes)
+    schedule = schedule_of(dossier.plan, minutes, crew.people, crew.hours_per_day)
+    write_text(folder / "tables" / "schedule.csv", schedule_csv(dossier.plan, schedule))
+    write_text(folder / "schedule.svg", gantt_svg(dossier.plan, schedule, gridshell.title))
+    if crew.start is not None:
+        start = date.fromisoformat(crew.start)
+        write_calendar(dossier.plan, schedule, start, folder / "schedule.ics", crew.days_per_week)
+    down = disassembly_of(gridshell, crew.people, crew.lift_limit)
+    write_text(folder / "disassembly.json", plan_json(down))
+
+
+def _write_locking(dossier: Dossier, folder: Path) -> None:
+    from aag_cad.export.tables import write_locking_table
+    from aag_cad.files import write_text
+    from assembly.locking import locking_orders, locking_svg
+
+    orders = locking_orders(dossier.model.gridshell)
+    write_locking_table(orders, folder / "tables" / "locking.csv")
+    write_text(folder / "locking.svg", locking_svg(orders[0]))
 
 
 def _write_sequence(dossier: Dossier, folder: Path) -> None:
@@ -166,6 +198,8 @@ OUTPUTS: dict[str, Writer] = {
     "passports": _write_passports,
     "facade": _write_facade,
     "plan": _write_plan,
+    "schedule": _write_schedule,
+    "locking": _write_locking,
     "sequence": _write_sequence,
     "overview": _write_overview,
 }

@@ -4,7 +4,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, groupby
-from typing import Literal, TypeAlias, cast, get_args
 
 import numpy as np
 
@@ -20,14 +19,7 @@ from assembly.plan import piece_weights
 from assembly.process import BEAMS_A_STEP, EVERYONE, LAID_A_STEP, PAIR
 from assembly.ranges import joined_ranges
 from assembly.site import ridge_pairs
-from assembly.steps import Phase, Plan, Step
-
-DownPhase: TypeAlias = Literal[
-    "uncover", "prop", "open ridges", "lift off", "clear feet", "hang", "release geodesics", "pull edge planks",
-    "lower", "take off beams", "take off geodesics", "pull studs", "unbolt", "passports",
-]  # fmt: skip
-
-DOWN_PHASES: tuple[DownPhase, ...] = get_args(DownPhase)
+from assembly.steps import DownPhase, Plan, Step
 
 _PAIRS_A_STEP = 4
 _GRAVITY = 9.81
@@ -361,8 +353,7 @@ def disassembly_of(gridshell: Gridshell, people: int, lift_limit: float) -> Plan
             steps.append(Step(
                 number=len(steps) + 1,
                 id=task.id,
-                # The phases of taking down are steps of a plan like any other, but not yet listed beside the others.
-                phase=cast(Phase, task.phase),
+                phase=task.phase,
                 title=task.title,
                 shell=task.shell,
                 marks=task.marks,

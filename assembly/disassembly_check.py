@@ -16,10 +16,6 @@ _Place: TypeAlias = tuple[str, int]
 _Rule: TypeAlias = tuple[str, _Place, _Place]
 
 
-def _phase(step: Step) -> str:
-    return step.phase
-
-
 def _numbering(plan: Plan) -> Iterator[str]:
     seen: set[str] = set()
     for i, step in enumerate(plan.steps, start=1):
@@ -63,7 +59,7 @@ def _once(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
 
 
 def _moved(plan: Plan, phase: str) -> Counter[str]:
-    return Counter(mark for step in plan.steps if _phase(step) == phase for mark in step.assemblies)
+    return Counter(mark for step in plan.steps if step.phase == phase for mark in step.assemblies)
 
 
 def _places(plan: Plan, gridshell: Gridshell) -> tuple[dict[str, _Place], dict[str, _Place]]:
@@ -75,7 +71,7 @@ def _places(plan: Plan, gridshell: Gridshell) -> tuple[dict[str, _Place], dict[s
     off = {
         mark: (step.id, len(step.marks) + i)
         for step in plan.steps
-        if _phase(step) == "take off beams"
+        if step.phase == "take off beams"
         for i, mark in enumerate(step.assemblies)
     }
     planks = [plank for shell in gridshell.shells for plank in shell.planks]
@@ -137,7 +133,7 @@ def _covered(gridshell: Gridshell, lying: dict[str, _Place]) -> Iterator[_Rule]:
 
 def _steps(plan: Plan, phase: str, unit: str = "") -> list[Step]:
     """Return the steps of a phase; with a unit only those of its chapter or that move it."""
-    found = (step for step in plan.steps if _phase(step) == phase)
+    found = (step for step in plan.steps if step.phase == phase)
     return [step for step in found if not unit or unit == step.shell or unit in step.assemblies]
 
 
@@ -183,8 +179,8 @@ def _hanging(plan: Plan, shell: Shell, leaves: dict[str, _Place]) -> Iterator[_R
 
 def _one_by_one(plan: Plan, forced: dict[str, set[str]]) -> Iterator[str]:
     """Yield pairs of shells that may hang at the same time: one set of hoists serves all."""
-    ends = {mark: step.id for step in plan.steps if _phase(step) == "lower" for mark in step.assemblies}
-    hung = {mark: step.id for step in plan.steps if _phase(step) == "hang" for mark in step.assemblies}
+    ends = {mark: step.id for step in plan.steps if step.phase == "lower" for mark in step.assemblies}
+    hung = {mark: step.id for step in plan.steps if step.phase == "hang" for mark in step.assemblies}
     for a, b in combinations(sorted(set(ends) & set(hung)), 2):
         if ends[a] not in forced[hung[b]] and ends[b] not in forced[hung[a]]:
             yield f"{a} and {b}: nothing forces one to be lowered before the other hangs, but the hoists serve one"

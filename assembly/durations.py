@@ -33,9 +33,8 @@ from aag_cad.parts.model import (
 )
 from aag_cad.parts.quantities import sizes
 from aag_cad.units import MM_PER_M
-from assembly.disassembly import DOWN_PHASES
 from assembly.errors import PlanError
-from assembly.steps import Plan, Step
+from assembly.steps import DOWN_PHASES, Plan, Step
 
 _KINDS: dict[type[Part], str] = {
     Stud: "stud", CouplingBlock: "block", Bolt: "bolt", Screw: "screw", Strap: "strap", Shoe: "shoe", Rod: "rod",

@@ -17,6 +17,7 @@ from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.units import Floats
 from assembly.drawing import CHARACTER, Style, circle, group, line, polygon, rectangle, svg, text
+from assembly.errors import PlanError
 from assembly.locking_model import (
     LockingModel,
     Prop,
@@ -165,7 +166,7 @@ def _step(marks: Group, values: Floats, threshold: float, sag: Sag) -> LockingSt
 
 
 def _all_soft_modes(model: LockingModel, fixed: Group, threshold: float) -> Floats:
-    """Return the lowest eigenvalues, as many as ``MODES`` and at least one more than are soft."""
+    """Return the lowest eigenvalues: ``MODES``, or all soft ones if these are more."""
     count = MODES
     while True:
         values, _ = modes_of(model, fixed, count)
@@ -190,8 +191,13 @@ def locking_order(
     3.2; without it they take their turn. ``pairs``: G-k together with G-(n + 1 - k). ``hoists`` are the studs on props,
     by default four. ``soft`` is the share of the lowest eigenvalue of the finished shell under which a mode is soft;
     ``limit`` (mm) the displacement under self-weight beyond which props are proposed. PlanError if the shell has no
-    feet or geodesics; FrameError if it is a mechanism.
+    feet or geodesics, or if ``soft`` or ``limit`` is out of range; FrameError if the shell is a mechanism.
     """
+    if not (0.0 < soft <= 1.0 and limit > 0.0):
+        raise PlanError(
+            f"{shell.mark}: soft = {soft:g}, limit = {limit:g} mm; soft is a share above 0 and at most 1, limit "
+            "more than 0 mm: mend them"
+        )
     model = locking_model(shell, timber, hoists=hoists, pairs=pairs)
     edges, groups = edge_groups(model), (*edge_groups(model), *model.geodesics)
     value = lowest_eigenvalue(model)

@@ -81,6 +81,16 @@ class Divisible:
         return {mark: mass(part, self.timber) for mark, part in self.small.items()}
 
     @cached_property
+    def centres(self) -> dict[str, Floats]:
+        """A point (3,) in the middle of each small part, by mark."""
+        return {mark: part_point(part) for mark, part in self.small.items()}
+
+    @cached_property
+    def stations(self) -> dict[tuple[str, str], float]:
+        """Stations of the joints on the planks, by (plank, joint)."""
+        return {(mark, place.joint): place.station for mark, plank in self.planks.items() for place in plank.joints}
+
+    @cached_property
     def fixed_on_site(self) -> frozenset[str]:
         """Small parts of the feet, the cover and the footings: fixed on site, cut or not."""
         return frozenset(
@@ -151,15 +161,14 @@ def run_splices(item: Divisible, stop: int) -> tuple[Splice, ...]:
     return (*beams, *edges)
 
 
-def _intervals(item: Divisible, track: Track, start: int, end: int) -> Iterator[tuple[PlankPiece, ...]]:
-    """Yield the pieces of a beam or edge plank, one for each of its planks, that lie in the run."""
-    grid, ends = item.tracks, cut_stops(item.tracks, start, end)
-    splices = {
-        splice.cuts[0].station: splice
-        for stop in ends
-        for splice in run_splices(item, stop)
-        if splice.member == track.mark
-    }
+def _intervals(
+    item: Divisible, track: Track, start: int, end: int, splices: dict[float, Splice]
+) -> Iterator[tuple[PlankPiece, ...]]:
+    """Yield the pieces of a beam or edge plank, one for each of its planks, that lie in the run.
+
+    ``splices`` are those of the cuts at the ends of the run, by station on its first plank.
+    """
+    grid = item.tracks
     cuts = [splices[station].cuts for station in sorted(splices)]
     first = item.planks[track.planks[0]]
     bounds = [0.0, *sorted(splices), first.blank.length]
@@ -186,7 +195,7 @@ def _held(item: Divisible, spans: dict[str, list[PlankPiece]], joint: Joint) -> 
     """Return the planks of a joint that are in the run where the joint is."""
     held = []
     for mark in (mark for mark in joint.members if mark in spans):
-        at = next((p.station for p in item.planks[mark].joints if p.joint == joint.mark), None)
+        at = item.stations.get((mark, joint.mark))
         if at is not None and any(p.start < at < p.end or _past_end(item, p, at) for p in spans[mark]):
             held.append(mark)
     return held
@@ -240,8 +249,11 @@ def _block_corners(item: Divisible, splice: Splice) -> Floats:
 def _spans(item: Divisible, start: int, end: int) -> dict[str, list[PlankPiece]]:
     geodesics = [item.tracks.lines[line - 1] for line in item.tracks.owned(start, end)]
     spans = {mark: [PlankPiece(mark, 0.0, item.planks[mark].blank.length)] for mark in geodesics}
+    cut: dict[str, dict[float, Splice]] = {}
+    for splice in (splice for stop in cut_stops(item.tracks, start, end) for splice in run_splices(item, stop)):
+        cut.setdefault(splice.member, {})[splice.cuts[0].station] = splice
     for track in item.tracks.members:
-        for pieces in _intervals(item, track, start, end):
+        for pieces in _intervals(item, track, start, end, cut.get(track.mark, {})):
             for piece in pieces:
                 spans.setdefault(piece.plank, []).append(piece)
     return spans
@@ -277,7 +289,7 @@ def run_between(item: Divisible, start: int, end: int) -> Run:
                 pieces.append(piece)
     for mark in small:
         masses.append(item.masses[mark])
-        centres.append(part_point(item.small[mark]))
+        centres.append(item.centres[mark])
         corners += [item.small_corners[mark]] if mark in item.small_corners else []
     for splice in blocks:
         masses.append(splice_block_mass(item, splice))

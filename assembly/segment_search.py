@@ -1,5 +1,6 @@
 """Where a shell is cut so that each of its segments fits the transport: exact over all cuts along geodesics."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -49,9 +50,11 @@ def pose_in(run: Run, limits: Limits, enough: float = 0.0) -> Pose:
 
 def fits(run: Run, limits: Limits) -> bool:
     """Return whether a run is light enough and a pose was found in which it fits."""
-    if run.mass > limits.load:
+    extents = np.ptp(run.corners, axis=0)
+    # Too long for the room's diagonal, or smaller in every direction than the room in any: no pose need be sought.
+    if run.mass > limits.load or float(extents.max()) > math.hypot(*limits.room):
         return False
-    if float(np.linalg.norm(np.ptp(run.corners, axis=0))) <= min(limits.room):
+    if math.hypot(*extents.tolist()) <= min(limits.room):
         return True
     return pose_in(run, limits, 1.0).filling <= 1.0 + _ROUNDING
 
@@ -96,6 +99,7 @@ def best_stops(item: Divisible, limits: Limits) -> tuple[int, ...] | None:
     far = (*stops, *(stop + turn for stop in stops)) if grid.ring else stops
     reach = furthest(far, len(stops), fitting)
 
+    @cache
     def allowed(start: int, end: int) -> bool:
         return end <= reach[start] and _owns(item, start, end)
 
@@ -103,6 +107,7 @@ def best_stops(item: Divisible, limits: Limits) -> tuple[int, ...] | None:
     def grams(start: int, end: int) -> int:
         return round(_GRAMS * run_between(item, start, end).mass)
 
+    @cache
     def cost(stop: int) -> int:
         return sum(splice.kind == "block" for splice in run_splices(item, stop))
 

@@ -15,7 +15,9 @@ FILES = {
     "vault.step", "vault.ifc", "vault.glb", "vault.btlx", "gridshell.json", "plan.json", "sequence.pdf", "overview.svg",
     "overview.png", "templates.pdf", "labels.pdf", "summary.json", "tables/parts.csv", "tables/holes.csv",
     "tables/checks.csv", "tables/prefabrication.csv", "tables/drilling.csv", "tables/purchases.csv",
-    "tables/cutting.csv", "tables/facade.csv", "reuse/passports.json", "reuse/passports.pdf", "reuse/reuse.csv",
+    "tables/cutting.csv", "tables/facade.csv", "tables/schedule.csv", "tables/locking.csv", "locking.svg",
+    "schedule.svg", "schedule.ics", "disassembly.json", "reuse/passports.json", "reuse/passports.pdf",
+    "reuse/reuse.csv",
     *(f"facade/P-{number:02d}.dxf" for number in range(1, 14)),
 }  # fmt: skip
 

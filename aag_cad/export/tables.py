@@ -13,6 +13,7 @@ from aag_cad.parts.model import Gridshell, Part, Plank, Timber, all_parts
 from aag_cad.parts.products import product_name
 from aag_cad.parts.quantities import hole_count, kind, largest_twist, mass, material_name, sizes, smallest_radius
 from aag_cad.units import deg_per_m
+from assembly.locking import LOCKING_HEADER, LockingOrder, locking_rows
 
 PARTS_HEADER = (
     "mark", "kind", "product", "family", "shell", "beam", "length_mm", "width_mm", "thickness_mm", "holes",
@@ -89,6 +90,11 @@ def write_holes_table(gridshell: Gridshell, path: str | os.PathLike[str]) -> Non
     """Write one line for every hole of every plank, from its start; FileError if the file cannot be written."""
     planks = sorted((plank for shell in gridshell.shells for plank in shell.planks), key=lambda plank: plank.mark)
     write_text(path, _csv(HOLES_HEADER, (row for plank in planks for row in hole_rows(plank))))
+
+
+def write_locking_table(orders: Iterable[LockingOrder], path: str | os.PathLike[str]) -> None:
+    """Write the order in which geodesics lock each shell, a line for each step; FileError if it cannot be written."""
+    write_text(path, _csv(LOCKING_HEADER, (row for order in orders for row in locking_rows(order))))
 
 
 def check_row(plank: Plank, timber: Timber) -> tuple[str, ...]:

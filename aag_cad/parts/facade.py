@@ -36,7 +36,7 @@ from aag_cad.parts.model import (
     Strip,
 )
 from aag_cad.parts.strips import Limit, Sheet, along_cut, depth_inside, sheet_of
-from aag_cad.units import Floats, vector
+from aag_cad.units import MM_PER_M, Floats, vector
 
 # Four samples past the end of a curve its spline is off by about 0.02 mm, and slanting cuts leave little sheet there.
 _REACH = 4.0 * SAMPLE_SPACING
@@ -199,6 +199,7 @@ def _strip(design: Design, pair: tuple[NetworkCurve, NetworkCurve]) -> Strip:
         thickness,
         tuple((u - first) / (last - first) for u in lower),
         tuple((u - first) / (last - first) for u in upper),
+        design.facade.sheet_mass / thickness * MM_PER_M,
     )
 
 

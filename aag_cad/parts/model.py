@@ -200,7 +200,7 @@ class Strip:
     ``left`` and ``right`` are its edges at mid-thickness, with equally many samples: sample i of both are the ends of
     ruling i; their normals are those of the sheet, outwards. The rulings have the parameter 0 (first) to 1 (last).
     ``lower`` and ``upper`` are the parameters at which the sheet ends, at equal fractions of the rulings from left to
-    right; in between the ends are straight in the flat pattern.
+    right; in between the ends are straight in the flat pattern. ``density`` (kg/m3) counts the hollow sheet as a whole.
     """
 
     mark: str
@@ -209,6 +209,7 @@ class Strip:
     thickness: float
     lower: tuple[float, ...]
     upper: tuple[float, ...]
+    density: float = 170.0
 
 
 @dataclass(frozen=True)

@@ -51,11 +51,10 @@ _KINDS: dict[type[Part], tuple[str, Material]] = {
     ClampingBar: ("clamping bar", "aluminium"),
     Blade: ("blade", "steel"),
 }
-# kg/m3; polycarbonate for 10 mm multiwall sheet of 1.7 kg/m2, concrete after EN 1991-1-1, table A.1.
+# kg/m3; concrete after EN 1991-1-1, table A.1. Sheets carry their own: they are hollow.
 _DENSITIES: dict[Material, float] = {
     "steel": STEEL_DENSITY,
     "aluminium": 2700.0,
-    "polycarbonate": 170.0,
     "concrete": 2400.0,
 }
 
@@ -187,6 +186,8 @@ def volume(part: Part) -> float:
 
 def density(part: Part, timber: Timber) -> float:
     """Return the density of a part, kg/m3."""
+    if isinstance(part, Strip):
+        return part.density
     made_of = material(part)
     return timber.density if made_of == "timber" else _DENSITIES[made_of]
 

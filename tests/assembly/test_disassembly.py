@@ -9,11 +9,11 @@ import pytest
 
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.parts.model import Blank, CrossSection, Gridshell, Plank, Shell, all_parts
-from assembly.disassembly import DOWN_PHASES, disassembly_of, stored_energy
+from assembly.disassembly import disassembly_of, stored_energy
 from assembly.disassembly_check import check_disassembly
 from assembly.errors import PlanError
 from assembly.plan import plan_of
-from assembly.steps import Plan
+from assembly.steps import DOWN_PHASES, Plan
 
 
 @pytest.fixture(scope="module")

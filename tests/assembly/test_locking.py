@@ -287,6 +287,12 @@ def test_a_hoist_that_is_no_stud_is_refused(small: Gridshell) -> None:
         locking_order(small.shells[0], small.timber, hoists=("S1-K-001",))
 
 
+@pytest.mark.parametrize(("soft", "limit"), [(0.0, 20.0), (1.5, 20.0), (0.5, 0.0)])
+def test_thresholds_out_of_range_are_refused(small: Gridshell, soft: float, limit: float) -> None:
+    with pytest.raises(PlanError, match=r"^S1: soft = .*limit more than 0 mm"):
+        locking_order(small.shells[0], small.timber, soft=soft, limit=limit)
+
+
 def test_a_shell_without_geodesics_is_refused(small: Gridshell) -> None:
     shell = small.shells[0]
     gone = {*flat_planks(shell, "G"), *(joint.mark for joint in shell.joints if joint.kind in ("AG", "foot", "ridge"))}

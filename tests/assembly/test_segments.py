@@ -282,7 +282,7 @@ def test_a_shell_is_cut_as_by_brute_force_over_all_lines(item: Divisible) -> Non
         return sum(splice.kind == "block" for splice in run_splices(item, stop))
 
     found = []
-    for inner in (cuts for count in range(3) for cuts in itertools.combinations(stops[1:-1], count)):
+    for inner in (cuts for n in range(3) for cuts in itertools.combinations(stops[1:-1], n)):
         masses = [grams(a, b) for a, b in itertools.pairwise((stops[0], *inner, stops[-1]))]
         if all(m is not None for m in masses):
             squares = sum(m**2 for m in masses if m is not None)
@@ -394,7 +394,7 @@ def test_a_crane_too_weak_for_one_geodesic_with_its_beams_is_a_problem(single: G
 
 
 def test_a_box_shorter_than_the_geodesics_is_a_problem(item: Divisible) -> None:
-    assert best_stops(item, Limits(2000.0, 2000.0, 2000.0, 3000.0)) is None
+    assert best_stops(item, Limits(1000.0, 1000.0, 1000.0, 3000.0)) is None
 
 
 def test_a_crane_limits_the_mass_as_the_lorry_does(item: Divisible) -> None:
@@ -454,7 +454,7 @@ def test_a_row_of_parts_is_parted_where_it_is_thinnest() -> None:
     assert groups == (frozenset(["01", "02", "03", "04", "05"]), frozenset(["06", "07", "08", "09", "10"]))
 
 
-@settings(max_examples=10)
+@settings(max_examples=5)
 @given(st.integers(1, 20), st.integers(0, 1000), st.integers(2, 9))
 def test_every_part_of_a_graph_is_in_one_group_that_fits(count: int, seed: int, load: int) -> None:
     graph = placed(named(nx.gnp_random_graph(count, 0.2, seed=seed)))

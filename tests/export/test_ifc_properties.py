@@ -108,7 +108,8 @@ def test_every_part_tells_its_segment_and_its_step(
 
 
 def test_without_a_plan_a_part_tells_its_segment_only(sample: Gridshell) -> None:
-    for element in ifc_model(sample).file.by_type("IfcFooting"):
+    file = ifc_model(sample).file
+    for element in file.by_type("IfcFooting"):
         row = ifcopenshell.util.element.get_psets(element)["AAG_Assembly"]
         assert set(row) == {"Segment", "id"}
 

@@ -47,24 +47,22 @@ def test_a_point_of_the_vault_goes_to_its_place_on_the_map(empty: Gridshell, sch
     east, north, height = ifcopenshell.util.geolocation.auto_xyz2enh(file, 10_000.0, 0.0, 2_000.0)
     assert east == pytest.approx(691_234.5 + 10.0 * math.cos(math.pi / 6.0), abs=1e-6)
     assert north == pytest.approx(5_334_567.25 + 10.0 * math.sin(math.pi / 6.0), abs=1e-6)
-    # The library scales the height in the later schemas as it does the rest.
     assert height == pytest.approx(517.0, abs=1e-6)
 
 
 def test_the_coordinate_system_is_named_by_its_epsg_number(empty: Gridshell) -> None:
-    (system,) = site_file(empty, MEADOW).by_type("IfcProjectedCRS")
-    assert (system.Name, system.Description, system.VerticalDatum) == (
-        "EPSG:25832", "ETRS89 / UTM zone 32N", "DHHN2016",
-    )  # fmt: skip
+    file = site_file(empty, MEADOW)
+    (system,) = file.by_type("IfcProjectedCRS")
+    named = (system.Name, system.Description, system.VerticalDatum)
+    assert named == ("EPSG:25832", "ETRS89 / UTM zone 32N", "DHHN2016")
     assert (system.MapUnit.Name, system.MapUnit.Prefix) == ("METRE", None)
 
 
 def test_grid_north_lies_turned_back_by_the_rotation(empty: Gridshell) -> None:
-    """X points 30 degrees north of east, so north is 60 degrees from x."""
-    (north,) = {context.TrueNorth.DirectionRatios for context in site_file(empty, MEADOW).by_type(
-        "IfcGeometricRepresentationContext", include_subtypes=False
-    )}  # fmt: skip
-    assert north == pytest.approx((math.cos(math.pi / 3.0), math.sin(math.pi / 3.0)))
+    """The x axis points 30 degrees north of east, so north is 60 degrees from x."""
+    file = site_file(empty, MEADOW)
+    (context,) = file.by_type("IfcGeometricRepresentationContext", include_subtypes=False)
+    assert context.TrueNorth.DirectionRatios == pytest.approx((math.cos(math.pi / 3.0), math.sin(math.pi / 3.0)))
     assert true_north(Site(true_north_deg=0.0)) == pytest.approx((0.0, 1.0))
     assert true_north(Site(true_north_deg=90.0)) == pytest.approx((-1.0, 0.0))
     assert true_north(Site()) is None
@@ -81,8 +79,8 @@ def test_site_and_building_have_their_names(empty: Gridshell, schema: IfcSchema)
 
 
 def test_the_address_stands_at_the_building_and_in_ifc4x3_in_a_set(empty: Gridshell) -> None:
-    assert site_file(empty, MEADOW).by_type("IfcBuilding")[0].BuildingAddress.AddressLines == MEADOW.address
-    later = site_file(empty, MEADOW, "IFC4X3_ADD2")
+    file, later = site_file(empty, MEADOW), site_file(empty, MEADOW, "IFC4X3_ADD2")
+    assert file.by_type("IfcBuilding")[0].BuildingAddress.AddressLines == MEADOW.address
     assert later.by_type("IfcBuilding")[0].BuildingAddress is None
     (lines,) = later.by_type("IfcPropertyListValue")
     assert tuple(line.wrappedValue for line in lines.ListValues) == MEADOW.address
