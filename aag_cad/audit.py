@@ -8,8 +8,8 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from aag_cad.mechanics.cover import bar_checks, sheet_checks, thermal_checks
 from aag_cad.design import Design
+from aag_cad.mechanics.cover import bar_checks, sheet_checks, thermal_checks
 from aag_cad.mechanics.fastener_spacing import shortfalls
 from aag_cad.mechanics.lamella import LamellaStress, lamella_stress
 from aag_cad.mechanics.supports import footing_checks

@@ -59,6 +59,14 @@ def _stud_faces(stud: Stud) -> Floats:
     return tube_faces(rings @ matrix[:3, :3].T + matrix[:3, 3])
 
 
+def _top_face(footing: Footing) -> Floats:
+    """Return all that is seen of a concrete block over the ground, (1, 4, 3)."""
+    x, y = footing.length / 2.0, footing.width / 2.0
+    corners = np.array([(-x, -y, 0.0), (x, -y, 0.0), (x, y, 0.0), (-x, y, 0.0)])
+    matrix = frame_matrix(footing.frame)
+    return np.asarray(corners @ matrix[:3, :3].T + matrix[:3, 3])[None]
+
+
 def picture_spacing(gridshell: Gridshell) -> float:
     """Return the length of the pieces that planks are drawn in, mm: so many that the picture stays a small file."""
     total = sum(plank.blank.length for shell in gridshell.shells for plank in shell.planks)
@@ -70,11 +78,12 @@ def _shell_faces(shell: Shell, spacing: float) -> Iterator[tuple[Floats, str]]:
         yield placed_points(tube_faces(plank_rings(plank, spacing)), shell), plank.family
     for stud in shell.studs:
         yield placed_points(_stud_faces(stud), shell), ""
-    fittings: tuple[Part, ...] = (*shell.shoes, *shell.straps, *shell.footings)
+    fittings: tuple[Part, ...] = (*shell.shoes, *shell.straps)
     for part in fittings:
         mesh = shell_mesh(part)
-        family = "C" if isinstance(part, Footing) else ""
-        yield placed_points(mesh.vertices, shell)[mesh.faces[:, [0, 1, 2, 2]]], family
+        yield placed_points(mesh.vertices, shell)[mesh.faces[:, [0, 1, 2, 2]]], ""
+    for footing in shell.footings:
+        yield placed_points(_top_face(footing), shell), "C"
 
 
 def _blade_faces(gridshell: Gridshell) -> Iterator[tuple[Floats, str]]:

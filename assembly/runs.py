@@ -166,12 +166,11 @@ def _intervals(
 ) -> Iterator[tuple[PlankPiece, ...]]:
     """Yield the pieces of a beam or edge plank, one for each of its planks, that lie in the run.
 
-    ``splices`` are those of the cuts at the ends of the run, by station on its first plank.
+    ``splices`` are those of the cuts at the ends of the run, by station on the beam or edge plank.
     """
-    grid = item.tracks
+    grid, member = item.tracks, item.planks[track.mark] if track.edge else item.beams[track.mark]
     cuts = [splices[station].cuts for station in sorted(splices)]
-    first = item.planks[track.planks[0]]
-    bounds = [0.0, *sorted(splices), first.blank.length]
+    bounds = [0.0, *sorted(splices), member.curve.length]
     bays, owned = grid.bays(start, end), grid.owned(start, end)
     for i, (low, high) in enumerate(pairwise(bounds)):
         if track.edge:
@@ -236,8 +235,7 @@ def splice_block_mass(item: Divisible, splice: Splice) -> float:
 def _block_corners(item: Divisible, splice: Splice) -> Floats:
     """Return the four far corners of a splice block at each of its ends, (8, 3)."""
     beam = item.beams[splice.member]
-    station = next(place.station for place in beam.joints if place.joint == splice.joint)
-    point, tangent, _across, normal = beam_axes(beam, station)
+    point, tangent, _across, normal = beam_axes(beam, _station(item, splice))
     block = next(item.small[mark] for mark in splice.left_out if isinstance(item.small[mark], CouplingBlock))
     assert isinstance(block, CouplingBlock)
     side = np.cross(normal, tangent)
@@ -246,12 +244,19 @@ def _block_corners(item: Divisible, splice: Splice) -> Floats:
     return np.asarray(point + (signs * sizes) @ np.array([tangent, normal, side]))
 
 
+def _station(item: Divisible, splice: Splice) -> float:
+    """Return where a splice is along its beam or edge plank; a beam's planks have stations of their own."""
+    if splice.kind == "plate":
+        return splice.cuts[0].station
+    return next(place.station for place in item.beams[splice.member].joints if place.joint == splice.joint)
+
+
 def _spans(item: Divisible, start: int, end: int) -> dict[str, list[PlankPiece]]:
     geodesics = [item.tracks.lines[line - 1] for line in item.tracks.owned(start, end)]
     spans = {mark: [PlankPiece(mark, 0.0, item.planks[mark].blank.length)] for mark in geodesics}
     cut: dict[str, dict[float, Splice]] = {}
     for splice in (splice for stop in cut_stops(item.tracks, start, end) for splice in run_splices(item, stop)):
-        cut.setdefault(splice.member, {})[splice.cuts[0].station] = splice
+        cut.setdefault(splice.member, {})[_station(item, splice)] = splice
     for track in item.tracks.members:
         for pieces in _intervals(item, track, start, end, cut.get(track.mark, {})):
             for piece in pieces:
