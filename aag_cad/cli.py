@@ -131,7 +131,7 @@ def build(
     only: Annotated[
         str,
         typer.Option(
-            help="comma-separated outputs, such as step,ifc,tables; web, curves and rhino are written only if named"
+            help="comma-separated outputs, such as step,ifc; web, curves, rhino and segments are written only if named"
         ),
     ] = "",
     curves: Annotated[

@@ -150,6 +150,16 @@ def _write_locking(dossier: Dossier, folder: Path) -> None:
     write_text(folder / "locking.svg", locking_svg(orders[0]))
 
 
+def _write_segments(dossier: Dossier, folder: Path) -> None:
+    from aag_cad.export.tables import write_segment_tables
+    from assembly.segment_search import Limits
+    from assembly.segments import segments
+
+    truck = dossier.model.design.transport
+    found = segments(dossier.model.gridshell, Limits(truck.length, truck.width, truck.height, truck.mass))
+    write_segment_tables(found, folder / "tables" / "segments.csv", folder / "tables" / "splices.csv")
+
+
 def _write_sequence(dossier: Dossier, folder: Path) -> None:
     from assembly.printout import write_sequence
 
@@ -208,6 +218,7 @@ EXTRA_OUTPUTS: dict[str, Writer] = {
     "web": _write_web,
     "curves": _write_curves,
     "rhino": _write_rhino,
+    "segments": _write_segments,
 }
 EVERY_OUTPUT = OUTPUTS | EXTRA_OUTPUTS
 # Outputs whose library comes with an extra of the package, by output: (module, extra).

@@ -14,6 +14,8 @@ from aag_cad.parts.products import product_name
 from aag_cad.parts.quantities import hole_count, kind, largest_twist, mass, material_name, sizes, smallest_radius
 from aag_cad.units import deg_per_m
 from assembly.locking import LOCKING_HEADER, LockingOrder, locking_rows
+from assembly.segment_sheet import SEGMENTS_HEADER, SPLICES_HEADER, segment_rows, splice_rows
+from assembly.segments import Segmentation
 
 PARTS_HEADER = (
     "mark", "kind", "product", "family", "shell", "beam", "length_mm", "width_mm", "thickness_mm", "holes",
@@ -95,6 +97,14 @@ def write_holes_table(gridshell: Gridshell, path: str | os.PathLike[str]) -> Non
 def write_locking_table(orders: Iterable[LockingOrder], path: str | os.PathLike[str]) -> None:
     """Write the order in which geodesics lock each shell, a line for each step; FileError if it cannot be written."""
     write_text(path, _csv(LOCKING_HEADER, (row for order in orders for row in locking_rows(order))))
+
+
+def write_segment_tables(
+    segmentation: Segmentation, path: str | os.PathLike[str], splices_path: str | os.PathLike[str]
+) -> None:
+    """Write what travels in one piece, and the splices where shells are cut; FileError if they cannot be written."""
+    write_text(path, _csv(SEGMENTS_HEADER, segment_rows(segmentation)))
+    write_text(splices_path, _csv(SPLICES_HEADER, splice_rows(segmentation)))
 
 
 def check_row(plank: Plank, timber: Timber) -> tuple[str, ...]:

@@ -53,7 +53,7 @@ def read(path: Path, kernel: str) -> dict[str, Body]:
 
 @pytest.fixture(scope="module")
 def sample(gridshell: Gridshell) -> Gridshell:
-    return sampled(gridshell, of_a_kind=2)
+    return sampled(gridshell, of_a_kind=1)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ from aag_cad.parts.model import Gridshell, Joint, Part, Shell, all_parts
 from assembly.plan import plan_of
 from assembly.steps import Step
 
-OF_A_KIND = 3
+OF_A_KIND = 2
 
 
 def _some(joints: Sequence[Joint], of_a_kind: int) -> tuple[Joint, ...]:
