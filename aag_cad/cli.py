@@ -137,21 +137,24 @@ def build(
     curves: Annotated[
         str, typer.Option(metavar="FILE", help="polylines (JSON) of another program in place of the design's curves")
     ] = "",
+    ifc_schema: Annotated[str, typer.Option(help="IFC4, IFC4X3_ADD2 or IFC2X3")] = "IFC4",
+    ifc_geometry: Annotated[str, typer.Option(help="mesh, or brep for B-spline faces of planks and bars")] = "mesh",
     as_json: AsJson = False,
 ) -> None:
-    """Build a design into a folder of STEP, IFC, tables, assembly plan and pictures."""
+    """Build a design into a folder of STEP, IFC, shop files, tables, assembly plan and pictures."""
     from aag_cad.design import load_design
 
     read = load_design(design)
-    from aag_cad.outputs import chosen_outputs, left_out
+    from aag_cad.outputs import chosen_outputs, ifc_choice, left_out
     from aag_cad.pipeline import MODEL_STAGES, curves_from
     from aag_cad.pipeline import build as run
 
+    choice = ifc_choice(ifc_schema, ifc_geometry)
     wanted = [name.strip() for name in only.split(",") if name.strip()]
     stages = len(MODEL_STAGES) + len(chosen_outputs(wanted))
     folder = output or Path(read.project.name)
     with _progress(stages, as_json) as report:
-        summary = run(read, folder, wanted, report, curves_from(curves) if curves else None).summary
+        summary = run(read, folder, wanted, report, curves_from(curves) if curves else None, choice).summary
     if as_json:
         print(json.dumps(summary, indent=1, ensure_ascii=False))
         return

@@ -92,14 +92,17 @@ def strain(plank: Plank) -> list[Property]:
     return rows
 
 
-def fabrication(part: Part, timber: Timber, drilling_group: str = "") -> list[Property]:
-    """Return the properties of ``AAG_Fabrication`` of one piece; planks name the template that they are drilled by."""
+def fabrication(part: Part, made: Sequence[Property], drilling_group: str = "") -> list[Property]:
+    """Return the properties of ``AAG_Fabrication`` of one piece; planks name the template that they are drilled by.
+
+    ``made`` are those that it shares with all pieces of its product.
+    """
     mark = parse_mark(part.mark)
     rows: list[Property] = [
         ("Mark", "IfcIdentifier", part.mark),
         ("Family", "IfcLabel", mark.family),
         ("Index", "IfcInteger", mark.index),
-        *make(part, timber),
+        *made,
     ]
     if holes := hole_table(part):
         rows.append(("Holes", "IfcText", holes))
@@ -122,10 +125,10 @@ def write_fabrication(
     ``groups`` holds the drilling group of each plank by mark.
     """
     for key, parts in products:
+        made = make(parts[0], timber)
         if isinstance(parts[0], FASTENERS):
-            related = [occurrences[part.mark] for part in parts]
-            write_property_set(model, FABRICATION, key, make(parts[0], timber), related)
+            write_property_set(model, FABRICATION, key, made, [occurrences[part.mark] for part in parts])
             continue
         for part in parts:
-            rows = fabrication(part, timber, groups.get(part.mark, ""))
+            rows = fabrication(part, made, groups.get(part.mark, ""))
             write_property_set(model, FABRICATION, part.mark, rows, [occurrences[part.mark]])
