@@ -30,6 +30,9 @@ class IfcChoice:
     geometry: IfcGeometry = "mesh"
 
 
+AS_MESH_IN_IFC4 = IfcChoice()
+
+
 @dataclass(frozen=True)
 class Dossier:
     """What the outputs of a build are written from: the model, the plan of its assembly, what is bought for it."""
@@ -37,7 +40,7 @@ class Dossier:
     model: Model
     plan: "Plan"
     purchases: Purchases
-    ifc: IfcChoice = IfcChoice()
+    ifc: IfcChoice = AS_MESH_IN_IFC4
 
 
 Writer: TypeAlias = Callable[[Dossier, Path], None]

@@ -29,7 +29,7 @@ from aag_cad.network.edges import bottom_coordinate, top_coordinate
 from aag_cad.network.extent import shell_extent
 from aag_cad.network.model import CurveNetwork
 from aag_cad.network.polylines import read_polylines
-from aag_cad.outputs import EVERY_OUTPUT, Dossier, IfcChoice, chosen_outputs
+from aag_cad.outputs import AS_MESH_IN_IFC4, EVERY_OUTPUT, Dossier, IfcChoice, chosen_outputs
 from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.model import Gridshell
 from aag_cad.shop.purchases import purchases_of
@@ -214,7 +214,7 @@ def build(
     only: Iterable[str] = (),
     report: Report = lambda stage: None,
     given_curves: CurveNetwork | None = None,
-    ifc: IfcChoice = IfcChoice(),
+    ifc: IfcChoice = AS_MESH_IN_IFC4,
 ) -> Build:
     """Build a design into a folder and return what was built.
 

@@ -28,9 +28,9 @@ from aag_cad.export.ifc_kinds import colour
 from aag_cad.export.step import Header, write_step
 from aag_cad.parts.assemblies import beam_of_parts
 from aag_cad.parts.mesh import placed, shell_mesh
-from aag_cad.parts.triangles import Mesh
 from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, all_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
+from aag_cad.parts.triangles import Mesh
 from aag_cad.pipeline import gridshell_of
 from aag_cad.solids.brep import signed_volume
 from aag_cad.solids.products import product_solids

@@ -100,4 +100,4 @@ def test_an_unknown_rod_size_is_named_with_its_key() -> None:
 
     text = template("designs", "vault.toml").read_text(encoding="utf-8")
     with pytest.raises(DesignError, match=r"supports\.rod_diameter"):
-        parse_design(text.replace("foot_height = 150.0", "foot_height = 150.0\nrod_diameter = 15"))
+        parse_design(text.replace("rod_diameter = 16 ", "rod_diameter = 15 "))
