@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import TypeAlias
 
 import numpy as np
@@ -56,13 +57,12 @@ def _geodesic_run(design: Design, geodesic: NetworkCurve, crossing: Crossing) ->
     return _Run(geodesic.curve, (own, (*pairs, *singles)))
 
 
-def _crown_run(design: Design, curves: dict[CurveId, NetworkCurve], crossing: Crossing) -> _Run:
-    """Return the straight line between two ridge planks near the ends at which they meet, two bolts in each."""
+def _crown_run(design: Design, curves: dict[CurveId, NetworkCurve], crossing: Crossing, back: float) -> _Run:
+    """Return the straight line between two ridge planks, ``back`` mm from the ends at which they meet."""
     half = 3.0 * design.joints.bolt_diameter
     ends = []
     for curve in (curves[name] for name in crossing.curves):
         nearer_start = crossing.stations[0] - curve.start < curve.end - crossing.stations[0]
-        back = _END_DISTANCE + 2.0 * half
         frames = frames_at(curve.curve, np.array([curve.start + back if nearer_start else curve.end - back]))
         ends.append((frames.point[0], frames.normal[0]))
     (a, n), (b, m) = ends
@@ -123,24 +123,32 @@ def strap_joint(
 ) -> BuiltJoint:
     """Return a ridge joint with a strap inside, or outside where beams take the inside.
 
-    Where neither is free it lies inside, and the audit reports what runs into it.
+    Where neither is free it lies inside, and the audit reports what runs into it; at the crown, where the beams in the
+    way tie the ridge planks themselves, there is none then, and the audit notes a joint without fasteners.
     """
     curves = {curve.id: curve for curve in network.curves}
     names = crossing.curves
-    on_geodesic = names[0].family == "G"
-    run = _geodesic_run(design, curves[names[0]], crossing) if on_geodesic else _crown_run(design, curves, crossing)
+    if names[0].family == "G":
+        runs = [_geodesic_run(design, curves[names[0]], crossing)]
+    else:
+        nearest = _END_DISTANCE + 6.0 * design.joints.bolt_diameter
+        backs = np.arange(nearest, 3.0 * nearest, 2.0 * _BACK).tolist()
+        runs = [_crown_run(design, curves, crossing, back) for back in backs]
     own = {curve_mark(mark.shell, name) for name in names}
     others = [obstacle for obstacle in among if obstacle.part.mark not in own]
 
     def free(*parts: Part) -> bool:
         return all(is_free(placed_points(part), others, _FREE) for part in parts)
 
-    def first_free(ways: tuple[tuple[_Place, ...], ...], side: float) -> tuple[_Place, ...] | None:
+    def first_free(run: _Run, ways: tuple[tuple[_Place, ...], ...], side: float) -> tuple[_Place, ...] | None:
         return next((way for way in ways if free(*(_bolt(design, mark, 1, run, at, side)[0] for at in way))), None)
 
-    for side in (-1.0, 1.0):
-        chosen = [first_free(ways, side) for ways in run.ways]
+    for run, side in product(runs, (-1.0, 1.0)):
+        chosen = [first_free(run, ways, side) for ways in run.ways]
         places = [place for way in chosen if way is not None for place in way]
         if None not in chosen and free(_strap(design, mark, run, places, side)):
             return _strapped(design, mark, crossing, run, places, side)
-    return _strapped(design, mark, crossing, run, [*run.ways[0][0], *run.ways[1][0]], -1.0)
+    if names[0].family != "G":
+        members = tuple(curve_mark(mark.shell, name) for name in names)
+        return BuiltJoint(Joint(str(mark), "ridge", crossing.point, crossing.normal, members, ()), (), ())
+    return _strapped(design, mark, crossing, runs[0], [*runs[0].ways[0][0], *runs[0].ways[1][0]], -1.0)

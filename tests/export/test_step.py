@@ -28,7 +28,7 @@ from aag_cad.export.ifc_kinds import colour
 from aag_cad.export.step import Header, write_step
 from aag_cad.parts.assemblies import beam_of_parts
 from aag_cad.parts.mesh import placed, shell_mesh
-from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, all_parts, shell_parts
+from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
 from aag_cad.parts.triangles import Mesh
 from aag_cad.pipeline import gridshell_of
@@ -158,7 +158,7 @@ def parents_in_the_model(gridshell: Gridshell) -> dict[str, str]:
         home = beam_of_parts(shell)
         parents |= {beam.mark: shell.mark for beam in shell.beams}
         parents |= {part.mark: home.get(part.mark, shell.mark) for part in shell_parts(shell)}
-    return parents
+    return parents | {part.mark: "" for part in ridge_parts(gridshell)}
 
 
 def solids_in(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
@@ -302,13 +302,13 @@ def test_a_second_reading_finds_every_solid_valid_and_in_its_place(few: Gridshel
     assert all(BRepCheck_Analyzer(solid).IsValid() for solid, _volume, _centre in read)
     centres = np.array([centre for _solid, _volume, centre in read])
     taken = set()
-    for shell in few.shells:
-        for part in shell_parts(shell):
-            away = np.linalg.norm(centres - centroid(placed(shell_mesh(part), shell.placement)), axis=1)
-            near = int(np.argmin(away))
-            taken.add(near)
-            # The meshes have chords of 120 mm and no holes or countersinks: their centres are a millimetre or two off.
-            assert away[near] < 2.5
+    meshes = [placed(shell_mesh(part), shell.placement) for shell in few.shells for part in shell_parts(shell)]
+    for mesh in (*meshes, *(shell_mesh(part) for part in ridge_parts(few))):
+        away = np.linalg.norm(centres - centroid(mesh), axis=1)
+        near = int(np.argmin(away))
+        taken.add(near)
+        # The meshes have chords of 120 mm and no holes or countersinks: their centres are a millimetre or two off.
+        assert away[near] < 2.5
     assert len(taken) == len(read)
 
 
@@ -366,7 +366,7 @@ def test_the_header_says_what_it_is_told_and_no_clock_is_read(few: Gridshell, tm
 
 
 def test_a_title_beyond_ascii_is_spelt_as_the_standard_asks(few: Gridshell, tmp_path: Path) -> None:
-    titled = replace(few, title="Gewölbe 'Eschenholz' 木 \N{DECIDUOUS TREE}", shells=())
+    titled = replace(few, title="Gewölbe 'Eschenholz' 木 \N{DECIDUOUS TREE}", shells=(), blades=(), bolts=())
     write_step(titled, tmp_path / "titled.step")
     names = [first_string(body) for body in read_text(tmp_path / "titled.step").of("PRODUCT").values()]
     assert names == [r"Gew\X2\00F6\X0\lbe ''Eschenholz'' \X2\6728\X0\ \X4\0001F333\X0\\"[:-1]]
