@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
 from aag_cad.parts.forming import blank_points, formed_points
@@ -12,6 +13,7 @@ from aag_cad.parts.model import (
     Bolt,
     ClampingBar,
     CouplingBlock,
+    FlatBar,
     Footing,
     Mullion,
     Part,
@@ -73,6 +75,20 @@ def surface_points(part: Part) -> Floats:
     return np.concatenate([np.column_stack([walls, np.repeat(heights, len(ring))]), mesh.vertices])
 
 
+def _bar_depths(bar: FlatBar, points: Floats) -> Floats:
+    """Return depths in a formed bar; points farther from its curve than its section reaches get minus infinity."""
+    half_width, half_thickness = bar.blank.section.width / 2.0, bar.blank.section.thickness / 2.0
+    away, _nearest = cKDTree(bar.curve.points).query(points)
+    reach = np.hypot(np.diff(bar.curve.stations).max() / 2.0, np.hypot(half_width, half_thickness))
+    near = away <= reach
+    depths = np.full(len(points), -np.inf)
+    if near.any():
+        x, y, z = blank_points(bar, points[near]).T
+        sides = [x, bar.blank.length - x, half_width - np.abs(y), half_thickness - np.abs(z)]
+        depths[near] = np.minimum.reduce(sides)
+    return depths
+
+
 def _threaded_depth(pieces: Iterable[BoltPiece], points: Floats) -> Floats:
     radius, height = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     depths = [np.minimum.reduce([p.size / 2.0 - radius, height - p.low, p.high - height]) for p in pieces]
@@ -82,10 +98,7 @@ def _threaded_depth(pieces: Iterable[BoltPiece], points: Floats) -> Floats:
 def depths_in(part: Part, points: Floats) -> Floats:
     """Return how deep points (n, 3) in product coordinates lie inside a part, mm, (n,); negative outside."""
     if isinstance(part, _BARS):
-        x, y, z = blank_points(part, points).T
-        half_width, half_thickness = part.blank.section.width / 2.0, part.blank.section.thickness / 2.0
-        sides = [x, part.blank.length - x, half_width - np.abs(y), half_thickness - np.abs(z)]
-        return np.asarray(np.minimum.reduce(sides))
+        return _bar_depths(part, points)
     if isinstance(part, CouplingBlock):
         size = np.array([part.length, part.width, part.thickness]) / 2.0
         return np.asarray((size - np.abs(points)).min(axis=1))

@@ -1,6 +1,7 @@
 """Between the straight blank and the formed plank: one map and its inverse."""
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from aag_cad.geometry.framed import Frames, frames_at, nearest_station
 from aag_cad.geometry.surface import dot
@@ -27,8 +28,7 @@ def formed_points(plank: FlatBar, blank_points: Floats) -> Floats:
 
 def blank_points(plank: FlatBar, points: Floats) -> Floats:
     """Return the coordinates (n, 3) in the straight blank of points (n, 3) near the formed plank."""
-    samples = plank.curve.points
-    nearest = np.argmin(np.linalg.norm(points[:, None, :] - samples[None, :, :], axis=2), axis=1)
+    _distance, nearest = cKDTree(plank.curve.points).query(points)
     stations = nearest_station(plank.curve, points, plank.curve.stations[nearest])
     centre, _tangent, width, thickness = plank_axes(plank, stations)
     gap = points - centre
