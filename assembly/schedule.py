@@ -1,7 +1,5 @@
 """When each step is done: a schedule that never needs more people than the crew has."""
 
-import csv
-import io
 from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,6 +8,7 @@ from math import ceil
 
 import networkx as nx
 
+from aag_cad.files import csv_text
 from assembly.errors import PlanError
 from assembly.steps import Plan
 
@@ -258,11 +257,7 @@ def schedule_rows(plan: Plan, schedule: Schedule) -> list[tuple[str, ...]]:
 
 def schedule_csv(plan: Plan, schedule: Schedule) -> str:
     """Return the schedule as CSV: one header line, LF, steps in their order, times in minutes of work."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(SCHEDULE_HEADER)
-    writer.writerows(schedule_rows(plan, schedule))
-    return out.getvalue()
+    return csv_text(SCHEDULE_HEADER, schedule_rows(plan, schedule))
 
 
 def schedule_tasks(plan: Plan, schedule: Schedule) -> tuple[Task, ...]:

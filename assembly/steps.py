@@ -22,10 +22,10 @@ PHASES: tuple[Phase, ...] = (*UP_PHASES, *DOWN_PHASES)
 class Step:
     """One step of putting together or of taking down.
 
-    ``marks`` are the parts that it adds or takes off; ``assemblies`` the beams or shells, put together before, that it moves into
-    place, in the order of laying. ``predecessors`` are the ids of the steps that must be done before it. ``hold`` says
-    what must be checked before work goes on, or is "". ``shell`` is "" for steps of the whole vault; ``crew`` counts
-    people.
+    ``marks`` are the parts that it adds or takes off; ``assemblies`` the beams or shells, put together before, that it
+    moves into place, in the order of laying. ``predecessors`` are the ids of the steps that must be done before it.
+    ``hold`` says what must be checked before work goes on, or is "". ``shell`` is "" for steps of the whole vault;
+    ``crew`` counts people.
     """
 
     number: int

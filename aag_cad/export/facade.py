@@ -1,7 +1,5 @@
 """Flat patterns of the strips as DXF, and the table of strips and bars; equal ones of all shells once."""
 
-import csv
-import io
 import math
 import os
 from collections import defaultdict
@@ -27,7 +25,7 @@ from aag_cad.export.dxf_blanks import (
     Polyline,
     Text,
 )
-from aag_cad.files import write_bytes, write_text
+from aag_cad.files import csv_text, write_bytes, write_text
 from aag_cad.parts.facade import strip_neighbours
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import ClampingBar, Gridshell, Mullion, Strip
@@ -285,6 +283,4 @@ def write_facade_table(design: Design, gridshell: Gridshell, path: str | os.Path
         [bar for shell in gridshell.shells for bar in shell.clamps],
     ):
         rows += [_bar_row(product, gridshell) for product in _bar_products(bars)]
-    out = io.StringIO()
-    csv.writer(out, lineterminator="\n").writerows([FACADE_HEADER, *rows])
-    write_text(path, out.getvalue())
+    write_text(path, csv_text(FACADE_HEADER, rows))

@@ -1,7 +1,5 @@
 """Reuse passports as files: JSON for programs, an A4 booklet for people, and reuse.csv as stock of the next design."""
 
-import csv
-import io
 import json
 import math
 import os
@@ -14,7 +12,7 @@ from typing import Any
 import segno
 import typst
 
-from aag_cad.files import write_bytes, write_text
+from aag_cad.files import csv_text, write_bytes, write_text
 from aag_cad.parts.marks import shell_of
 from aag_cad.parts.model import Gridshell, Hole, Plank, Timber
 from aag_cad.resources import template
@@ -110,11 +108,7 @@ def _plain(held: Passport) -> dict[str, Any]:
 
 def reuse_csv(held: Iterable[Passport]) -> str:
     """Return the planks as stock for the next design: ``REUSE_HEADER``, then a line for each plank, LF."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(REUSE_HEADER)
-    writer.writerows(reuse_row(each) for each in sorted(held, key=lambda each: each.mark))
-    return out.getvalue()
+    return csv_text(REUSE_HEADER, (reuse_row(each) for each in sorted(held, key=lambda each: each.mark)))
 
 
 def passports_pdf(held: Iterable[Passport], gridshell: Gridshell) -> bytes:

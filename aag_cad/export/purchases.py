@@ -1,11 +1,9 @@
 """Purchase list and cutting list as CSV: one header line, LF; lengths in mm or m as named, masses in kg."""
 
-import csv
-import io
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 
-from aag_cad.files import write_text
+from aag_cad.files import csv_text, write_text
 from aag_cad.shop.purchases import CutStock, Purchase, Purchases
 
 PURCHASES_HEADER = (
@@ -67,19 +65,11 @@ def cutting_rows(purchases: Purchases) -> Iterator[tuple[str, ...]]:
             yield name, str(sheet.number), f"{sheet.length:g}", f"{strip.x:.1f}", "", strip.mark, "", "1/1", note
 
 
-def _csv(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(rows)
-    return out.getvalue()
-
-
 def write_purchases(purchases: Purchases, path: str | os.PathLike[str]) -> None:
     """Write the purchase list, without spares; FileError if the file cannot be written."""
-    write_text(path, _csv(PURCHASES_HEADER, (purchase_row(line) for line in purchases.lines)))
+    write_text(path, csv_text(PURCHASES_HEADER, (purchase_row(line) for line in purchases.lines)))
 
 
 def write_cutting(purchases: Purchases, path: str | os.PathLike[str]) -> None:
     """Write the cutting list, one line for every piece; FileError if the file cannot be written."""
-    write_text(path, _csv(CUTTING_HEADER, cutting_rows(purchases)))
+    write_text(path, csv_text(CUTTING_HEADER, cutting_rows(purchases)))

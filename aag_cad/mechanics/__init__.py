@@ -1,1 +1,1 @@
-"""Stresses of bent and twisted planks."""
+"""What planks, web and supports bear: stresses, frame engine, prefabrication, hole rules, cover, footings."""
