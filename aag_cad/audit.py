@@ -2,14 +2,13 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from itertools import chain
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from aag_cad.design import Design
-from aag_cad.mechanics.cover import bar_checks, sheet_checks, thermal_checks
+from aag_cad.findings import Finding, Severity
+from aag_cad.mechanics.cover import FACADE_CHECKS
 from aag_cad.mechanics.fastener_spacing import shortfalls
 from aag_cad.mechanics.lamella import LamellaStress, lamella_stress
 from aag_cad.mechanics.supports import footing_checks
@@ -20,35 +19,11 @@ from aag_cad.parts.model import Gridshell, Plank, Shell, all_joints, all_parts
 from aag_cad.shop.purchases import Purchases
 from aag_cad.units import Floats, deg_per_m
 
-Severity: TypeAlias = Literal["error", "warning", "note"]
-
 CONTACT = 1.0
 TOUCH = 0.25
 AXIS_TOLERANCE = 0.1
 ANGLE_SPAN_DEG = 1.0
 BOW = 1.0
-_OLD_PLANK = "AAG902"
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One finding: a code, how bad it is, the mark, the figure found and allowed with its unit, and the remedy."""
-
-    code: str
-    severity: Severity
-    mark: str
-    what: str
-    found: float
-    allowed: float
-    unit: str
-    remedy: str
-
-    @property
-    def text(self) -> str:
-        """The finding in one line."""
-        unit = f" {self.unit}" if self.unit else ""
-        return f"{self.mark}: {self.what} {self.found:.4g}{unit}, allowed {self.allowed:.4g}{unit}; {self.remedy}"
-
 
 Check: TypeAlias = Callable[[Design, Gridshell], Iterator[Finding]]
 
@@ -90,8 +65,7 @@ def hole_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     AAG201 from the end, AAG202 from the edge, AAG203 from each other, AAG204 size of the hole, AAG205 in a coupling
     block, AAG206 in a stud, AAG207 washers; planks alike are named once. See ``aag_cad.mechanics.fastener_spacing``.
     """
-    for miss in shortfalls(gridshell):
-        yield Finding(miss.code, miss.severity, miss.mark, miss.what, miss.found, miss.required, "mm", miss.remedy)
+    yield from shortfalls(gridshell)
 
 
 def end_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
@@ -219,14 +193,6 @@ def ridge_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
             yield Finding("AAG504", "warning", family, "blades", 0, 1, "", remedy)
 
 
-def facade_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
-    """Yield AAG851 and on: sheets against their stock and bending, gaps against heat, bars and their screws."""
-    for check in chain(*(checks(design, gridshell) for checks in (sheet_checks, thermal_checks, bar_checks))):
-        yield Finding(
-            check.code, check.severity, check.mark, check.what, check.found, check.allowed, check.unit, check.remedy
-        )
-
-
 CHECKS: tuple[Check, ...] = (
     forming_findings,
     hole_findings,
@@ -238,23 +204,13 @@ CHECKS: tuple[Check, ...] = (
     boundary_findings,
     support_findings,
     ridge_findings,
-    facade_findings,
+    *FACADE_CHECKS,
 )
 _ORDER = {"error": 0, "warning": 1, "note": 2}
-
-
-def stock_findings(purchases: Purchases) -> Iterator[Finding]:
-    """Yield what the stock cannot give: parts that are too long (AAG901), old planks (AAG902), strips (AAG903)."""
-    for refused in purchases.refused:
-        severity: Severity = "note" if refused.code == _OLD_PLANK else "error"
-        yield Finding(
-            refused.code, severity, refused.mark, refused.what, refused.found, refused.allowed, refused.unit,
-            refused.remedy,
-        )  # fmt: skip
 
 
 def audit(design: Design, gridshell: Gridshell, purchases: Purchases) -> list[Finding]:
     """Return the findings of all checks, errors first, then by code and mark."""
     found = [finding for check in CHECKS for finding in check(design, gridshell)]
-    found += stock_findings(purchases)
+    found += purchases.refused
     return sorted(found, key=lambda f: (_ORDER[f.severity], f.code, f.mark, f.what))

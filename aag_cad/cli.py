@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
-from typing import Annotated, Any, ParamSpec
+from typing import Annotated, Any, ParamSpec, cast
 
 import typer
 from rich.console import Console
@@ -145,16 +145,18 @@ def build(
     from aag_cad.design import load_design
 
     read = load_design(design)
-    from aag_cad.outputs import chosen_outputs, ifc_choice, left_out
+    from aag_cad.export.ifc_options import IfcGeometry, IfcOptions, IfcSchema
+    from aag_cad.outputs import chosen_outputs, left_out
     from aag_cad.pipeline import MODEL_STAGES, curves_from
     from aag_cad.pipeline import build as run
 
-    choice = ifc_choice(ifc_schema, ifc_geometry)
+    # What cannot be written is refused, with what there is, before anything is built.
+    options = IfcOptions(cast("IfcSchema", ifc_schema), cast("IfcGeometry", ifc_geometry))
     wanted = [name.strip() for name in only.split(",") if name.strip()]
     stages = len(MODEL_STAGES) + len(chosen_outputs(wanted))
     folder = output or Path(read.project.name)
     with _progress(stages, as_json) as report:
-        summary = run(read, folder, wanted, report, curves_from(curves) if curves else None, choice).summary
+        summary = run(read, folder, wanted, report, curves_from(curves) if curves else None, options).summary
     if as_json:
         print(json.dumps(summary, indent=1, ensure_ascii=False))
         return

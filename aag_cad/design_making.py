@@ -68,6 +68,11 @@ class Joints(Section):
     block_length: Positive
 
     @property
+    def loaded_end(self) -> float:
+        """The distance of a bolt from a loaded end, a3,t = max(7 d, 80 mm) of EN 1995-1-1, table 8.4."""
+        return max(7.0 * self.bolt_diameter, 80.0)
+
+    @property
     def stud_slot(self) -> float:
         """How much longer than round the holes of stud bolts are, mm."""
         return self.slot_length if self.stud_hole == "slot" else 0.0

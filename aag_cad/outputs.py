@@ -1,13 +1,14 @@
 """Every output by name: what it writes into the folder of a build."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, TypeAlias
 
 from aag_cad.errors import DesignError
+from aag_cad.export.ifc_options import IfcOptions
 from aag_cad.network.polylines import polylines_json
 from aag_cad.shop.purchases import Purchases
 from aag_cad.web.interpolation import interpolated_surface
@@ -18,20 +19,6 @@ from aag_cad.worked import Model
 if TYPE_CHECKING:
     from assembly.plan import Plan
 
-IfcSchema: TypeAlias = Literal["IFC4", "IFC4X3_ADD2", "IFC2X3"]
-IfcGeometry: TypeAlias = Literal["mesh", "brep"]
-
-
-@dataclass(frozen=True)
-class IfcChoice:
-    """Schema and bodies of the IFC file, as asked for on the command line."""
-
-    schema: IfcSchema = "IFC4"
-    geometry: IfcGeometry = "mesh"
-
-
-AS_MESH_IN_IFC4 = IfcChoice()
-
 
 @dataclass(frozen=True)
 class Dossier:
@@ -40,7 +27,7 @@ class Dossier:
     model: Model
     plan: "Plan"
     purchases: Purchases
-    ifc: IfcChoice = AS_MESH_IN_IFC4
+    ifc: IfcOptions
 
 
 Writer: TypeAlias = Callable[[Dossier, Path], None]
@@ -60,16 +47,12 @@ def _write_step(dossier: Dossier, folder: Path) -> None:
 
 
 def _write_ifc(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.ifc import IfcOptions, write_ifc
+    from aag_cad.export.ifc import write_ifc
 
     gridshell, design = dossier.model.gridshell, dossier.model.design
-    options = IfcOptions(
-        schema=dossier.ifc.schema,
-        geometry=dossier.ifc.geometry,
-        site=design.site,
-        author=design.project.author,
-        organisation=design.project.organisation,
-        crew=design.crew,
+    project = design.project
+    options = replace(
+        dossier.ifc, site=design.site, author=project.author, organisation=project.organisation, crew=design.crew
     )
     write_ifc(gridshell, folder / f"{gridshell.name}.ifc", dossier.plan.steps, options)
 
@@ -266,16 +249,3 @@ def left_out() -> dict[str, str]:
         for name, (module, extra) in OPTIONAL.items()
         if find_spec(module) is None
     }
-
-
-def ifc_choice(schema: str, geometry: str) -> IfcChoice:
-    """Return the choice of an IFC schema and bodies; DesignError with what there is if it cannot be written."""
-    schemas: dict[str, IfcSchema] = {name: name for name in get_args(IfcSchema)}
-    geometries: dict[str, IfcGeometry] = {name: name for name in get_args(IfcGeometry)}
-    if schema not in schemas:
-        raise DesignError(f"--ifc-schema: {schema!r} is not written; choose {', '.join(schemas)}")
-    if geometry not in geometries:
-        raise DesignError(f"--ifc-geometry: {geometry!r} is not written; choose {', '.join(geometries)}")
-    if (schema, geometry) == ("IFC2X3", "brep"):
-        raise DesignError("--ifc-geometry: IFC2X3 has no B-spline faces; choose mesh, or another --ifc-schema")
-    return IfcChoice(schemas[schema], geometries[geometry])

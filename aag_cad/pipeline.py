@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from aag_cad.audit import Finding, audit
+from aag_cad.audit import audit
 from aag_cad.design import Design
 from aag_cad.design_sections import (
     ArcSurface,
@@ -21,6 +21,8 @@ from aag_cad.design_sections import (
     SplineSurface,
 )
 from aag_cad.errors import DesignError, FileError
+from aag_cad.export.ifc_options import IfcOptions, require_known
+from aag_cad.findings import Finding
 from aag_cad.geometry.profiles import ArcProfile, CrpcProfile, HyperboloidProfile, Profile, SplineProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.geometry.surface import Chart
@@ -29,7 +31,7 @@ from aag_cad.network.edges import bottom_coordinate, top_coordinate
 from aag_cad.network.extent import shell_extent
 from aag_cad.network.model import CurveNetwork
 from aag_cad.network.polylines import read_polylines
-from aag_cad.outputs import AS_MESH_IN_IFC4, EVERY_OUTPUT, Dossier, IfcChoice, chosen_outputs
+from aag_cad.outputs import EVERY_OUTPUT, Dossier, chosen_outputs
 from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.model import Gridshell
 from aag_cad.shop.purchases import purchases_of
@@ -214,7 +216,7 @@ def build(
     only: Iterable[str] = (),
     report: Report = lambda stage: None,
     given_curves: CurveNetwork | None = None,
-    ifc: IfcChoice = AS_MESH_IN_IFC4,
+    ifc: IfcOptions | None = None,
 ) -> Build:
     """Build a design into a folder and return what was built.
 
@@ -224,7 +226,8 @@ def build(
     from aag_cad.export.summary import summary_of, write_summary
     from assembly.plan import plan_of
 
-    outputs = chosen_outputs(only)
+    outputs, ifc_options = chosen_outputs(only), ifc or IfcOptions()
+    require_known(ifc_options)
     begun: list[tuple[str, float]] = []
 
     def begin(stage: str) -> None:
@@ -240,7 +243,7 @@ def build(
         findings = tuple(audit(design, model.gridshell, purchases))
         begin("assembly")
         plan = plan_of(model.gridshell, design.crew.people, design.crew.lift_limit)
-        dossier = Dossier(model, plan, purchases, ifc)
+        dossier = Dossier(model, plan, purchases, ifc_options)
         for output in outputs:
             begin(output)
             EVERY_OUTPUT[output](dossier, staging)

@@ -18,7 +18,8 @@ def _ancestors(plan: Plan) -> dict[str, set[str]]:
     return found
 
 
-def _numbering(plan: Plan) -> Iterator[str]:
+def numbering_problems(plan: Plan) -> Iterator[str]:
+    """Yield what is wrong with the numbers, ids and predecessors of any plan."""
     seen: set[str] = set()
     for i, step in enumerate(plan.steps, start=1):
         if step.number != i:
@@ -174,7 +175,7 @@ def check_plan(plan: Plan, gridshell: Gridshell) -> list[str]:
     shells before their ridges, all of them before the cover) forced by predecessors.
     """
     places = _places(plan, gridshell)
-    problems = [*_numbering(plan), *_once(plan, gridshell)]
+    problems = [*numbering_problems(plan), *_once(plan, gridshell)]
     for shell in gridshell.shells:
         problems += list(_shell_problems(plan, shell, places))
     return [*problems, *_ridges(plan, gridshell), *_cover(plan, gridshell)]

@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+from assembly.errors import PlanError
+
 LONG_PIECE = 3000.0
 
 
@@ -12,6 +14,16 @@ class Crew:
 
     people: int
     lift_limit: float
+
+
+def crew_of(people: int, lift_limit: float) -> Crew:
+    """Return a crew; PlanError with the keys to mend if nobody is in it or nobody lifts anything."""
+    if people < 1 or not lift_limit > 0.0:
+        raise PlanError(
+            f"crew: {people} people who lift {lift_limit:g} kg each; at least 1 person and more than 0 kg: "
+            "mend crew.people and crew.lift_limit"
+        )
+    return Crew(people, lift_limit)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,7 @@ import numpy as np
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.parts.model import Bolt, Gridshell, Rod, Shell, Timber
 from aag_cad.units import MM_PER_M
-from assembly.crew import Crew, hands_for
-from assembly.errors import PlanError
+from assembly.crew import crew_of, hands_for
 from assembly.flat import flat_order, groups_of
 from assembly.kit import Kit, shell_kit
 from assembly.layers import crossing_levels, lying_unit
@@ -328,12 +327,7 @@ def disassembly_of(gridshell: Gridshell, people: int, lift_limit: float) -> Plan
 
     PlanError if the layers are woven in a circle, a part belongs to no joint, or the crew is empty.
     """
-    if people < 1 or not lift_limit > 0.0:
-        raise PlanError(
-            f"crew: {people} people who lift {lift_limit:g} kg each; at least 1 person and more than 0 kg: "
-            "mend crew.people and crew.lift_limit"
-        )
-    crew, weights = Crew(people, lift_limit), piece_weights(gridshell)
+    crew, weights = crew_of(people, lift_limit), piece_weights(gridshell)
     kits = {shell.mark: shell_kit(shell) for shell in gridshell.shells}
     chapters = [list(_site_tasks(gridshell, kits))]
     hoists: tuple[str, ...] = ()

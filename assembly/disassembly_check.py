@@ -9,24 +9,12 @@ import networkx as nx
 import numpy as np
 
 from aag_cad.parts.model import Bolt, Gridshell, Joint, Part, Shell, all_joints, all_parts
+from assembly.check import numbering_problems
 from assembly.steps import Plan, Step
 
 # A place in the plan: the step, and the turn in it. A rule: why, what comes first, what then.
 _Place: TypeAlias = tuple[str, int]
 _Rule: TypeAlias = tuple[str, _Place, _Place]
-
-
-def _numbering(plan: Plan) -> Iterator[str]:
-    seen: set[str] = set()
-    for i, step in enumerate(plan.steps, start=1):
-        if step.number != i:
-            yield f"step {step.id}: number {step.number}, expected {i}"
-        if step.id in seen:
-            yield f"step {step.id}: the id stands twice"
-        for before in step.predecessors:
-            if before not in seen:
-                yield f"step {step.id}: predecessor {before} does not come before it"
-        seen.add(step.id)
 
 
 def _forced(plan: Plan) -> dict[str, set[str]]:
@@ -200,7 +188,7 @@ def check_disassembly(plan: Plan, gridshell: Gridshell) -> list[str]:
     """
     leaves, lying = _places(plan, gridshell)
     forced = _forced(plan)
-    problems = [*_numbering(plan), *_once(plan, gridshell), *_one_by_one(plan, forced)]
+    problems = [*numbering_problems(plan), *_once(plan, gridshell), *_one_by_one(plan, forced)]
     rules = [*_fastened(gridshell, leaves, lying), *_covered(gridshell, lying), *_measured(plan, leaves)]
     for shell in gridshell.shells:
         rules += [*_standing(plan, shell, leaves), *_hanging(plan, shell, leaves)]

@@ -7,7 +7,7 @@ from typing import Any, get_type_hints
 
 from aag_cad.parts.model import Gridshell, JointKind, all_parts
 from aag_cad.parts.quantities import mass, sizes
-from assembly.crew import Crew, hands_for
+from assembly.crew import Crew, crew_of, hands_for
 from assembly.errors import PlanError
 from assembly.kit import shell_kit
 from assembly.process import Work, shell_works
@@ -82,12 +82,7 @@ def plan_of(gridshell: Gridshell, people: int, lift_limit: float) -> Plan:
 
     PlanError if the layers are woven in a circle, a part belongs to no joint, or the crew is empty.
     """
-    if people < 1 or not lift_limit > 0.0:
-        raise PlanError(
-            f"crew: {people} people who lift {lift_limit:g} kg each; at least 1 person and more than 0 kg: "
-            "mend crew.people and crew.lift_limit"
-        )
-    crew, weights = Crew(people, lift_limit), piece_weights(gridshell)
+    crew, weights = crew_of(people, lift_limit), piece_weights(gridshell)
     chapters = [(shell.mark, (shell,), shell_works(shell)) for shell in gridshell.shells]
     steps: list[Step] = []
     for name, shells, works in [*chapters, ("", gridshell.shells, site_works(gridshell))]:

@@ -9,9 +9,10 @@ from aag_cad.export.ifc_bodies import mapped_shape
 from aag_cad.export.ifc_joints import write_joints
 from aag_cad.export.ifc_kinds import IFC_KINDS
 from aag_cad.export.ifc_materials import associate_materials
+from aag_cad.export.ifc_options import IfcOptions, IfcSchema, require_known
 from aag_cad.export.ifc_properties import write_fabrication
 from aag_cad.export.ifc_schedule import write_schedule
-from aag_cad.export.ifc_schemas import IfcOptions, IfcSchema, require_known, type_word
+from aag_cad.export.ifc_schemas import type_word
 from aag_cad.export.ifc_site import spatial_tree
 from aag_cad.export.ifc_standard_sets import write_product_sets, write_serial_numbers
 from aag_cad.export.ifc_types import Product, define_types, products

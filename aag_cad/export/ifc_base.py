@@ -9,7 +9,8 @@ import ifcopenshell
 import ifcopenshell.guid
 
 from aag_cad import __version__
-from aag_cad.export.ifc_schemas import IfcOptions, IfcSchema, known, view_definition
+from aag_cad.export.ifc_options import IfcOptions, IfcSchema, view_definition
+from aag_cad.export.ifc_schemas import known
 from aag_cad.parts.model import Frame, Gridshell
 from aag_cad.units import Vector
 

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import BSpline, make_interp_spline
+from scipy.interpolate import BSpline
 
 from aag_cad.export.ifc_base import Entity, IfcModel
-from aag_cad.parts.forming import formed_points, plank_axes
+from aag_cad.parts.forming import corner_splines, plank_axes
 from aag_cad.parts.model import FlatBar
 from aag_cad.units import Floats
 
@@ -24,18 +24,6 @@ class _Edges:
     long: list[Entity]
     start: list[Entity]
     end: list[Entity]
-
-
-def corner_splines(bar: FlatBar) -> BSpline:
-    """Return the four long edges of a plank or bar as one quintic spline into (4, 3) by the length of its centre line.
-
-    They are interpolated at the samples of the centre line, as those of its solid are.
-    """
-    y, z = bar.blank.section.width / 2.0, bar.blank.section.thickness / 2.0
-    ring = np.array([(-y, -z), (y, -z), (y, z), (-y, z)])
-    stations = bar.curve.stations
-    blank = np.column_stack([np.repeat(stations, _CORNERS), np.tile(ring, (len(stations), 1))])
-    return make_interp_spline(stations, formed_points(bar, blank).reshape(-1, _CORNERS, 3), k=_DEGREE)
 
 
 def _knots(spline: BSpline) -> tuple[list[int], list[float]]:

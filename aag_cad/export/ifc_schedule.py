@@ -6,7 +6,7 @@ from datetime import date
 from aag_cad.design_making import Minutes
 from aag_cad.errors import DesignError
 from aag_cad.export.ifc_base import TIMESTAMP, Entity, IfcModel, declare, rooted
-from aag_cad.export.ifc_schemas import IfcOptions
+from aag_cad.export.ifc_options import IfcOptions
 from aag_cad.export.ifc_sets import Property, write_property_set
 from aag_cad.export.ifc_tasks import Timing, WorkingTime, timings
 from aag_cad.parts.model import Gridshell

@@ -6,7 +6,7 @@ import numpy as np
 
 from aag_cad.export.ifc_base import Entity, IfcModel
 from aag_cad.export.ifc_kinds import IFC_KINDS
-from aag_cad.export.ifc_schemas import IfcSchema
+from aag_cad.export.ifc_options import IfcSchema
 from aag_cad.export.ifc_sets import Property, Quantity, write_property_set, write_quantities
 from aag_cad.parts.model import Bolt, ClampingBar, Footing, Mullion, Part, Plank, Rod, Strip, Timber
 from aag_cad.parts.products import product_name

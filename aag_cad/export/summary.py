@@ -7,8 +7,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from aag_cad.audit import Finding, forming_stresses
+from aag_cad.audit import forming_stresses
 from aag_cad.files import write_text
+from aag_cad.findings import Finding
 from aag_cad.mechanics.supports import footing_checks
 from aag_cad.network.extent import ShellExtent
 from aag_cad.parts.blades import ridge_gaps

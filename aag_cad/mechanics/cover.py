@@ -1,11 +1,10 @@
 """The checks of the cover: sheets against their stock and their bending, gaps against heat, bars and screws."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
 
 from aag_cad.design import Design
+from aag_cad.findings import Finding
 from aag_cad.parts.facade import FREE_END
 from aag_cad.parts.model import ClampingBar, Gridshell, Mullion, Shell
 from aag_cad.parts.quantities import smallest_radius
@@ -26,25 +25,11 @@ PENETRATION = 6.0
 _ROUNDING = 0.05
 
 
-@dataclass(frozen=True)
-class FacadeCheck:
-    """A figure of the cover that is out of its range, with all that a finding of the audit needs."""
-
-    code: str
-    severity: Literal["error", "warning", "note"]
-    mark: str
-    what: str
-    found: float
-    allowed: float
-    unit: str
-    remedy: str
-
-
 def _covered(gridshell: Gridshell) -> Iterator[Shell]:
     return (shell for shell in gridshell.shells if shell.strips)
 
 
-def sheet_checks(design: Design, gridshell: Gridshell) -> Iterator[FacadeCheck]:
+def sheet_checks(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     """Yield AAG851 (width), AAG852 (length) and AAG853 (bending radius) of strips that no stock sheet can make."""
     facade = design.facade
     longest, least = max(facade.sheet_lengths), BENDING_RATIO * facade.sheet_thickness
@@ -58,13 +43,13 @@ def sheet_checks(design: Design, gridshell: Gridshell) -> Iterator[FacadeCheck]:
                  "order longer sheets and add them to facade.sheet_lengths"),
             ):  # fmt: skip
                 if found > allowed:
-                    yield FacadeCheck(code, "error", strip.mark, what, found, allowed, "mm", remedy)
+                    yield Finding(code, "error", strip.mark, what, found, allowed, "mm", remedy)
             if radius < least:
                 what, remedy = "bending radius of the sheet", "take thinner sheets or flatten the surface there"
-                yield FacadeCheck("AAG853", "error", strip.mark, what, radius, least, "mm", remedy)
+                yield Finding("AAG853", "error", strip.mark, what, radius, least, "mm", remedy)
 
 
-def thermal_checks(design: Design, gridshell: Gridshell) -> Iterator[FacadeCheck]:
+def thermal_checks(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     """Yield AAG854 and AAG855: gaps beside and above a strip that are less than it grows by, 3 mm/m; AAG856: its grip.
 
     The worst case counts: one edge stuck, all movement at the other.
@@ -78,17 +63,17 @@ def thermal_checks(design: Design, gridshell: Gridshell) -> Iterator[FacadeCheck
             if side < across:
                 remedy = "widen facade.edge_gap"
                 what = "room between the sheet's edge and the screws"
-                yield FacadeCheck("AAG854", "error", strip.mark, what, side, across, "mm", remedy)
+                yield Finding("AAG854", "error", strip.mark, what, side, across, "mm", remedy)
             if design.shells.top != "level" and facade.ridge_clearance < along:
                 what, remedy = "room between the sheet's end and the ridge", "enlarge facade.ridge_clearance"
-                yield FacadeCheck("AAG855", "error", strip.mark, what, facade.ridge_clearance, along, "mm", remedy)
+                yield Finding("AAG855", "error", strip.mark, what, facade.ridge_clearance, along, "mm", remedy)
         grip = min(facade.mullion[0], facade.clamp[0]) / 2.0 - facade.edge_gap
         if grip < EDGE_GRIP - _ROUNDING:
             what, remedy = "grip of the bars on the edges of the sheets", "widen facade.mullion and facade.clamp"
-            yield FacadeCheck("AAG856", "warning", shell.mark, what, grip, EDGE_GRIP, "mm", remedy)
+            yield Finding("AAG856", "warning", shell.mark, what, grip, EDGE_GRIP, "mm", remedy)
 
 
-def bar_checks(design: Design, gridshell: Gridshell) -> Iterator[FacadeCheck]:
+def bar_checks(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     """Yield AAG857 (bending stress E t / 2 r of a bar), AAG858 (what its screws leave free).
 
     AAG859 and AAG860: the screws hold too little in the blocks, or run into the bolts across them.
@@ -101,7 +86,7 @@ def bar_checks(design: Design, gridshell: Gridshell) -> Iterator[FacadeCheck]:
             stress = ALUMINIUM_MODULUS * blank.section.thickness / 2.0 / smallest_radius(bar)
             if stress > ALUMINIUM_PROOF:
                 what, remedy = "stress of bending the bar", "take a thinner bar, or have it rolled to its radius"
-                yield FacadeCheck("AAG857", "error", bar.mark, what, stress, ALUMINIUM_PROOF, "N/mm2", remedy)
+                yield Finding("AAG857", "error", bar.mark, what, stress, ALUMINIUM_PROOF, "N/mm2", remedy)
             stations = [hole.station for hole in blank.holes]
             reach = max(stations[0], blank.length - stations[-1])
             apart = max((b - a for a, b in pairwise(stations)), default=0.0)
@@ -111,15 +96,15 @@ def bar_checks(design: Design, gridshell: Gridshell) -> Iterator[FacadeCheck]:
             ):
                 if found > allowed + _ROUNDING:
                     remedy = "no block fits between beams and fittings there; allow a wider facade.support_spacing"
-                    yield FacadeCheck("AAG858", "warning", bar.mark, what, found, allowed, "mm", remedy)
+                    yield Finding("AAG858", "warning", bar.mark, what, found, allowed, "mm", remedy)
         depth, least = facade.screw_length - facade.build_up, PENETRATION * facade.screw_diameter
         room = design.timber.width / 2.0 - design.joints.bolt_offset - design.joints.bolt_hole / 2.0
         if depth > room:
             what, remedy = "depth of the facade screws, to the bolt across the block", "take shorter screws"
-            yield FacadeCheck("AAG860", "error", shell.mark, what, depth, room, "mm", remedy)
+            yield Finding("AAG860", "error", shell.mark, what, depth, room, "mm", remedy)
         if depth < least - _ROUNDING:
             what, remedy = "penetration of the facade screws in the blocks", "take longer or thinner screws"
-            yield FacadeCheck("AAG859", "warning", shell.mark, what, depth, least, "mm", remedy)
+            yield Finding("AAG859", "warning", shell.mark, what, depth, least, "mm", remedy)
 
 
 FACADE_CHECKS = (sheet_checks, thermal_checks, bar_checks)

@@ -9,10 +9,11 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
+from aag_cad.findings import Finding
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Hole, HoleUse, Plank, Screw, all_joints, all_parts
 from aag_cad.units import Floats
@@ -26,7 +27,6 @@ _LENGTHEN = "lengthen the end, move the joint or prove the reduced distance"
 
 _JOINTS = {"N": "a stud", "K": "a block", "F": "a shoe", "R": "a strap", "V": "a cover"}
 
-Severity: TypeAlias = Literal["error", "warning", "note"]
 Diameters: TypeAlias = dict[tuple[str, HoleUse], float]
 
 
@@ -40,19 +40,6 @@ class FastenerDistances:
     a3_c: float
     a4_t: float
     a4_c: float
-
-
-@dataclass(frozen=True)
-class Shortfall:
-    """A distance that misses a clause: code, how bad, the part, what, found and required in mm, and the remedy."""
-
-    code: str
-    severity: Severity
-    mark: str
-    what: str
-    found: float
-    required: float
-    remedy: str
 
 
 def bolt_distances(diameter: float, angle: float) -> FastenerDistances:
@@ -134,24 +121,24 @@ def _diameter(hole: Hole, diameters: Diameters) -> float:
 def _two_limits(
     code: str, mark: str, what: str, found: float, table: str, least: tuple[str, float], loaded: tuple[str, float],
     remedy: str,
-) -> Shortfall | None:  # fmt: skip
+) -> Finding | None:  # fmt: skip
     """Return the shortfall below the least (clause, mm) as an error, below the loaded one as a warning, or None."""
     if found < least[1] - ROUNDING:
-        return Shortfall(code, "error", mark, f"{what} ({table}, {least[0]})", found, least[1], remedy)
+        return Finding(code, "error", mark, f"{what} ({table}, {least[0]})", found, least[1], "mm", remedy)
     if found < loaded[1] - ROUNDING:
         loaded_what = f"{what}, loaded ({table}, {loaded[0]})"
-        return Shortfall(code, "warning", mark, loaded_what, found, loaded[1], remedy)
+        return Finding(code, "warning", mark, loaded_what, found, loaded[1], "mm", remedy)
     return None
 
 
-def _worst(found: Iterable[Shortfall | None]) -> Iterator[Shortfall]:
+def _worst(found: Iterable[Finding | None]) -> Iterator[Finding]:
     """Yield the one that misses by most, errors before warnings; nothing if there is none."""
     missed = [item for item in found if item is not None]
     if missed:
-        yield min(missed, key=lambda item: (item.severity != "error", item.found - item.required))
+        yield min(missed, key=lambda item: (item.severity != "error", item.found - item.allowed))
 
 
-def plank_end_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Shortfall]:
+def plank_end_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Finding]:
     """Yield AAG201: the hole too near to an end, one for bolts and one for screws; a slot counts from its end."""
     for use in ("bolt", "screw"):
         missed = []
@@ -165,7 +152,7 @@ def plank_end_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Shortfa
         yield from _worst(missed)
 
 
-def plank_edge_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Shortfall]:
+def plank_edge_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Finding]:
     """Yield AAG202: the hole too near to an edge, one for bolts and one for screws."""
     for use in ("bolt", "screw"):
         missed = []
@@ -180,7 +167,7 @@ def plank_edge_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Shortf
         yield from _worst(missed)
 
 
-def plank_spacing_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Shortfall]:
+def plank_spacing_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Finding]:
     """Yield AAG203: the two holes too near to each other; two are far enough apart if along or across the grain.
 
     Of unlike fasteners the smaller distances are the least and the larger ones the most.
@@ -197,9 +184,7 @@ def plank_spacing_shortfalls(plank: Plank, diameters: Diameters) -> Iterator[Sho
     yield from _worst(missed)
 
 
-def _spacing(
-    mark: str, first: Hole, second: Hole, along: float, kinds: list[tuple[HoleUse, float]]
-) -> Shortfall | None:
+def _spacing(mark: str, first: Hole, second: Hole, along: float, kinds: list[tuple[HoleUse, float]]) -> Finding | None:
     across = abs(second.offset - first.offset)
     with_grain, against = ([distances(*kind, angle) for kind in kinds] for angle in (0.0, math.pi / 2.0))
     least = (min(one.a1 for one in against), min(one.a2 for one in with_grain))
@@ -218,31 +203,31 @@ def _spacing(
     return _two_limits("AAG203", mark, what, found, table, (name, least[i]), (name, most[i]), remedy)
 
 
-def hole_size_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Shortfall]:
+def hole_size_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Finding]:
     """Yield AAG204: bolt holes wider than the bolt + 1 mm (10.4.3), screw holes than the shank (10.4.5), and slots."""
-    wide: dict[str, list[Shortfall]] = defaultdict(list)
+    wide: dict[str, list[Finding]] = defaultdict(list)
     holes = ((plank.mark, hole) for shell in gridshell.shells for plank in shell.planks for hole in plank.blank.holes)
     for mark, hole in holes:
         d, width = _diameter(hole, diameters), hole.diameter
         if hole.use == "bolt" and width > d + HOLE_PLAY + ROUNDING:
             what, remedy = "bolt hole wider than the bolt + 1 mm (EN 1995-1-1, 10.4.3)", "drill it narrower"
-            wide["bolt"].append(Shortfall("AAG204", "error", mark, what, width, d + HOLE_PLAY, remedy))
+            wide["bolt"].append(Finding("AAG204", "error", mark, what, width, d + HOLE_PLAY, "mm", remedy))
         if hole.use == "screw" and width > d + ROUNDING:
             what = "screw hole wider than the shank (EN 1995-1-1, 10.4.5)"
             remedy = "drill the shank's diameter, or count on the screws for withdrawal only"
-            wide["screw"].append(Shortfall("AAG204", "note", mark, what, width, d, remedy))
+            wide["screw"].append(Finding("AAG204", "note", mark, what, width, d, "mm", remedy))
         if hole.slot > 0.0:
             what = "slot longer than the bolt + 1 mm (EN 1995-1-1, 10.4.3)"
             remedy = "count on the friction of tightened bolts, or fix the nodes by fitted bolts when formed"
-            wide["slot"].append(Shortfall("AAG204", "note", mark, what, width + hole.slot, d + HOLE_PLAY, remedy))
+            wide["slot"].append(Finding("AAG204", "note", mark, what, width + hole.slot, d + HOLE_PLAY, "mm", remedy))
     for kind in ("bolt", "screw", "slot"):
         yield from _grouped(wide[kind], "holes")
 
 
-def _grouped(items: list[Shortfall], noun: str) -> Iterator[Shortfall]:
+def _grouped(items: list[Finding], noun: str) -> Iterator[Finding]:
     """Yield the first of those of equal kind that miss by most to 0.1 mm, with how many there are."""
     if items:
-        worst = max(items, key=lambda item: round(abs(item.found - item.required), 1))
+        worst = max(items, key=lambda item: round(abs(item.found - item.allowed), 1))
         count = f"one of {len(items)} {noun} alike: " if len(items) > 1 else ""
         yield replace(worst, what=count + worst.what)
 
@@ -263,7 +248,7 @@ def _in_block(block: CouplingBlock, point: Floats) -> Floats:
     return np.asarray(axes @ (point - np.array(block.frame.origin)))
 
 
-def _block_screw_rules(block: CouplingBlock, screw: Screw, bolt: float) -> Iterator[Shortfall | None]:
+def _block_screw_rules(block: CouplingBlock, screw: Screw, bolt: float) -> Iterator[Finding | None]:
     """Yield what a screw driven into a block from its narrow face misses: end, face, and its point from the bolt."""
     head = np.array(screw.frame.origin)
     start, point = _in_block(block, head), _in_block(block, head + screw.length * np.array(screw.frame.z))
@@ -284,19 +269,19 @@ def _block_screw_rules(block: CouplingBlock, screw: Screw, bolt: float) -> Itera
         clear = math.hypot(beside, ahead) if ahead > 0.0 else beside
         if clear < 4.0 * bolt - ROUNDING:
             what = f"{name} its point from the bolt across it (as a2 of {table_of('bolt', bolt)})"
-            yield Shortfall("AAG205", "note", block.mark, what, float(clear), 4.0 * bolt, "take shorter screws")
+            yield Finding("AAG205", "note", block.mark, what, float(clear), 4.0 * bolt, "mm", "take shorter screws")
 
 
-def block_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Shortfall]:
+def block_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Finding]:
     """Yield AAG205: distances of bolts and screws in the coupling blocks, grain along the beam; like ones together.
 
     Never an error: the gap between the planks gives the block's thickness, and the planks bolted to both its faces keep
     it from splitting; what the tables ask is to be replaced by a test.
     """
     screws = _screws_in(gridshell)
-    groups: dict[str, list[Shortfall]] = defaultdict(list)
+    groups: dict[str, list[Finding]] = defaultdict(list)
     for block in (block for shell in gridshell.shells for block in shell.blocks):
-        rules: list[Shortfall | None] = []
+        rules: list[Finding | None] = []
         for hole in block.holes:
             d = _diameter(hole, diameters)
             least, most = bolt_distances(d, math.pi), bolt_distances(d, 0.0)
@@ -319,12 +304,12 @@ def block_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Sho
         yield from _grouped(groups[what], "blocks")
 
 
-def stud_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Shortfall]:
+def stud_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Finding]:
     """Yield AAG206: bolts in the studs, grain along the stud, forces across it; like ones together, never an error.
 
     The nearest edge is that of the hexagon's flat through which the bolt passes: half its width.
     """
-    groups: dict[str, list[Shortfall]] = defaultdict(list)
+    groups: dict[str, list[Finding]] = defaultdict(list)
     for stud in (stud for shell in gridshell.shells for stud in shell.studs if stud.holes):
         d = diameters.get((stud.mark, "bolt"), stud.holes[0].diameter)
         rules = bolt_distances(d, math.pi / 2.0)
@@ -337,14 +322,14 @@ def stud_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Shor
             if found < required - ROUNDING:
                 text = f"M{d:g} bolt in a stud of {stud.across_flats:g} mm, {what} (EN 1995-1-1, table 8.4, {clause})"
                 remedy = "prove the studs by test, or make them of plywood or steel"
-                groups[text].append(Shortfall("AAG206", "warning", stud.mark, text, found, required, remedy))
+                groups[text].append(Finding("AAG206", "warning", stud.mark, text, found, required, "mm", remedy))
     for text in sorted(groups):
         yield from _grouped(groups[text], "studs")
 
 
-def washer_shortfalls(gridshell: Gridshell) -> Iterator[Shortfall]:
+def washer_shortfalls(gridshell: Gridshell) -> Iterator[Finding]:
     """Yield AAG207: washers narrower than 3 d or thinner than 0.3 d (EN 1995-1-1, 10.4.3); like ones together."""
-    groups: dict[str, list[Shortfall]] = defaultdict(list)
+    groups: dict[str, list[Finding]] = defaultdict(list)
     for bolt in (part for part in all_parts(gridshell) if isinstance(part, Bolt)):
         for name, found, share in (
             ("width", bolt.washer_diameter, WASHER_WIDTH),
@@ -354,14 +339,14 @@ def washer_shortfalls(gridshell: Gridshell) -> Iterator[Shortfall]:
             if found < required - ROUNDING:
                 what = f"washer of M{bolt.diameter:g}, {name} ({share:g} d: EN 1995-1-1, 10.4.3)"
                 remedy = "take washers for timber (ISO 7094)"
-                groups[what].append(Shortfall("AAG207", "warning", bolt.mark, what, found, required, remedy))
+                groups[what].append(Finding("AAG207", "warning", bolt.mark, what, found, required, "mm", remedy))
     for what in sorted(groups):
         yield from _grouped(groups[what], "bolts")
 
 
-def plank_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Shortfall]:
+def plank_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Finding]:
     """Yield AAG201 to AAG203, the worst hole of each plank; planks that miss the same by the same 0.1 mm together."""
-    groups: dict[tuple[str, str, float], list[Shortfall]] = defaultdict(list)
+    groups: dict[tuple[str, str, float], list[Finding]] = defaultdict(list)
     for shell in gridshell.shells:
         for plank in shell.planks:
             for rule in (plank_end_shortfalls, plank_edge_shortfalls, plank_spacing_shortfalls):
@@ -371,7 +356,7 @@ def plank_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Sho
         yield from _grouped(alike, "planks")
 
 
-def shortfalls(gridshell: Gridshell) -> Iterator[Shortfall]:
+def shortfalls(gridshell: Gridshell) -> Iterator[Finding]:
     """Yield all of AAG201 to AAG207, like ones together under the first mark that misses by most."""
     diameters = _diameters(gridshell)
     yield from plank_shortfalls(gridshell, diameters)

@@ -21,7 +21,6 @@ from aag_cad.parts.model import Blade, Bolt, FoldedPlate, Frame, Gridshell, Join
 from aag_cad.units import Floats, vector
 
 _REACH = 30.0
-_FREE = 0.2
 _MIRRORED = 0.5
 _SHIFT = 20.0
 
@@ -152,16 +151,16 @@ def blade_joints(design: Design, network: CurveNetwork, among: Sequence[Obstacle
     margin = design.ridge.blade_width / 2.0 + 30.0
     found: list[BladeJoint] = []
     last = -math.inf
-    for i, station in enumerate(wished):
+    for station in wished:
         near = [abs(other - station) for other in wished if other != station]
         reach = min(near, default=2.0 * margin) / 2.0
         for at in _tries(station, plank.start + margin, plank.end - margin, reach):
-            joint = _free_blade(design, i + 1, _place(plank, at), among) if at - last > 2.0 * margin else None
+            joint = _free_blade(design, len(found) + 1, _place(plank, at), among) if at - last > 2.0 * margin else None
             if joint is not None:
                 found.append(joint)
                 last = at
                 break
-    return [_numbered(joint, i) for i, joint in enumerate(found, start=1)]
+    return found
 
 
 def _free_blade(design: Design, index: int, place: _Place, among: Sequence[Obstacle]) -> BladeJoint | None:
@@ -173,7 +172,7 @@ def _free_blade(design: Design, index: int, place: _Place, among: Sequence[Obsta
         blade, bolts = _blade(design, mark, place, side)
         fasteners = tuple(bolt for bolt, _, _ in bolts)
         points = np.concatenate([placed_points(blade), *(placed_points(bolt) for bolt in fasteners)])
-        if not is_free(points, others, _FREE):
+        if not is_free(points, others):
             continue
         back = turn(-2.0 * math.pi / design.shells.count)[:3, :3]
         drill = design.joints.bolt_hole
@@ -186,24 +185,6 @@ def _free_blade(design: Design, index: int, place: _Place, among: Sequence[Obsta
         joint = Joint(mark, "blade", blade.frame.origin, blade.frame.z, (first, second, mark), named)
         return BladeJoint(joint, blade, fasteners, left, right)
     return None
-
-
-def _numbered(found: BladeJoint, index: int) -> BladeJoint:
-    """Return a blade with another number."""
-    old, new = found.joint.mark, str(Mark(0, "R12", index))
-    joint = replace(
-        found.joint,
-        mark=new,
-        members=(*found.joint.members[:2], new),
-        fasteners=tuple(new + mark[len(old) :] for mark in found.joint.fasteners),
-    )
-    return BladeJoint(
-        joint,
-        replace(found.blade, mark=new),
-        tuple(replace(bolt, mark=new + bolt.mark[len(old) :]) for bolt in found.bolts),
-        tuple(replace(drilling, joint=new) for drilling in found.left),
-        tuple(replace(drilling, joint=new) for drilling in found.right),
-    )
 
 
 def own_sides(design: Design, found: BladeJoint) -> tuple[Joint, Joint]:

@@ -8,13 +8,12 @@ import numpy as np
 
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Blade, Bolt, Frame, Gridshell, Plank, Shell, Shoe, Strap
+from aag_cad.parts.model import UNMOVED, Blade, Bolt, Frame, Gridshell, Plank, Shell, Shoe, Strap
 from aag_cad.parts.plates import hole_axes
 from aag_cad.units import Floats
 
 # Point and direction, each (3,).
 Axis: TypeAlias = tuple[Floats, Floats]
-_NONE = Frame((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def axis_distance(axis: Axis, point: Floats) -> float:
@@ -26,7 +25,7 @@ def bolts_by_joint(gridshell: Gridshell) -> dict[str, dict[str, Axis]]:
     """Return the axes of all bolts by joint and by mark."""
     found: dict[str, dict[str, Axis]] = defaultdict(dict)
     groups: list[tuple[Frame, tuple[Bolt, ...]]] = [(shell.placement, shell.bolts) for shell in gridshell.shells]
-    for placement, bolts in [*groups, (_NONE, gridshell.bolts)]:
+    for placement, bolts in [*groups, (UNMOVED, gridshell.bolts)]:
         matrix = frame_matrix(placement)
         for bolt in bolts:
             point = matrix[:3, :3] @ np.array(bolt.frame.origin) + matrix[:3, 3]
@@ -60,7 +59,7 @@ def bolt_holes(gridshell: Gridshell) -> Iterator[tuple[str, str, float, Floats]]
     for shell in gridshell.shells:
         yield from _shell_holes(shell)
     for blade in gridshell.blades:
-        yield from _plate_holes(blade, _NONE, len(blade.plate.holes))
+        yield from _plate_holes(blade, UNMOVED, len(blade.plate.holes))
 
 
 def _shell_holes(shell: Shell) -> Iterator[tuple[str, str, float, Floats]]:

@@ -30,6 +30,7 @@ from aag_cad.parts.members import (
 )
 from aag_cad.parts.model import (
     SCHEMA_VERSION,
+    UNMOVED,
     Beam,
     Blade,
     Bolt,
@@ -169,7 +170,7 @@ def _shell(design: Design, network: CurveNetwork) -> tuple[Shell, list[BladeJoin
     marked = _numbered(network, 1)
     built = _beam_joints(design, marked, by_curve)
     upper = [c.point for _, c in marked if c.kind == "ridge"]
-    among = obstacles([*planks, *near_parts((part for b in built for part in b.parts), upper)], _placement(0, 1))
+    among = obstacles([*planks, *near_parts((part for b in built for part in b.parts), upper)], UNMOVED)
     built += _end_joints(design, network, marked, among)
     parts = [part for b in built for part in b.parts]
     blades = _blades(design, network, [*planks, *near_parts(parts, upper)])
@@ -183,7 +184,7 @@ def _shell(design: Design, network: CurveNetwork) -> tuple[Shell, list[BladeJoin
     beams, planks = _with_holes(design, beams, planks, joints, drillings)
     shell = Shell(
         mark="S1",
-        placement=_placement(0, 1),
+        placement=UNMOVED,
         planks=tuple(planks),
         beams=tuple(beams),
         studs=_of(Stud, parts),

@@ -9,6 +9,7 @@ import numpy as np
 from aag_cad.parts.depth import depths_in, surface_points
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import (
+    UNMOVED,
     ClampingBar,
     Frame,
     Gridshell,
@@ -25,7 +26,6 @@ from aag_cad.units import Floats, Vector, vector
 
 _STRETCH = 250.0
 _BETWEEN = -1
-_VAULT = Frame((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ def clashes(gridshell: Gridshell, limit: float) -> list[Clash]:
     """
     shells = gridshell.shells
     bodies = [_body(part, i, shell.placement) for i, shell in enumerate(shells) for part in shell_parts(shell)]
-    bodies += [_body(part, _BETWEEN, _VAULT) for part in ridge_parts(gridshell)]
+    bodies += [_body(part, _BETWEEN, UNMOVED) for part in ridge_parts(gridshell)]
     own, repeated = _own_pairs(gridshell), _repeated(bodies, len(shells))
     samples = {body.key: _point_groups(body.part) for body in {body.key: body for body in bodies}.values()}
     pieces = [piece for index, body in enumerate(bodies) for piece in _pieces(index, body, samples[body.key])]

@@ -14,6 +14,8 @@ from aag_cad.units import Floats, Vector
 
 _NEAR = 500.0
 _MARGIN = 1.0
+# What steel may press into timber, mm: less than its own half thickness, or it would seem free inside.
+CONTACT = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +74,7 @@ def placed_points(part: Part) -> Floats:
     return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
 
 
-def is_free(points: Floats, among: Iterable[Obstacle], limit: float) -> bool:
+def is_free(points: Floats, among: Iterable[Obstacle], limit: float = CONTACT) -> bool:
     """Return whether none of points (n, 3) lies deeper than ``limit`` mm inside an obstacle."""
     low, high = points.min(axis=0), points.max(axis=0)
     for obstacle in among:

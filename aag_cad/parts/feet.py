@@ -17,8 +17,6 @@ from aag_cad.parts.members import LAYER, Drilling, curve_mark
 from aag_cad.parts.model import Bolt, FoldedPlate, Footing, Frame, Joint, PlateHole, Rod, Shoe
 from aag_cad.units import Floats, vector
 
-# EN 1995-1-1, table 8.4: a3,t = max(7 d, 80 mm) from the end of the geodesic; 3 d from every edge.
-_END_DISTANCE = 80.0
 _ROD_SPARE = 6.0
 _LEVEL = 0.2
 _LINE_STEP = 15.0
@@ -70,7 +68,7 @@ def _in_plane(site: _Site, points: Floats) -> Floats:
 
 def _bolt_stations(design: Design, site: _Site) -> tuple[float, float]:
     """Return the stations on the geodesic's curve of its own bolts, and of the highest point of the shoe."""
-    bolts = site.geodesic.start + _END_DISTANCE
+    bolts = site.geodesic.start + design.joints.loaded_end
     return bolts, bolts + 2.0 * design.joints.bolt_diameter
 
 

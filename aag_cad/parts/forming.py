@@ -1,12 +1,15 @@
 """Between the straight blank and the formed plank: one map and its inverse."""
 
 import numpy as np
+from scipy.interpolate import BSpline, make_interp_spline
 from scipy.spatial import cKDTree
 
 from aag_cad.geometry.framed import Frames, frames_at, nearest_station
 from aag_cad.geometry.surface import dot
 from aag_cad.parts.model import FlatBar, Plank
 from aag_cad.units import Floats
+
+CORNER_DEGREE = 5
 
 
 def plank_axes(plank: FlatBar, stations: Floats) -> tuple[Floats, Floats, Floats, Floats]:
@@ -18,6 +21,22 @@ def plank_axes(plank: FlatBar, stations: Floats) -> tuple[Floats, Floats, Floats
     if isinstance(plank, Plank) and plank.upright:
         return frames.point, frames.tangent, frames.normal, -frames.binormal
     return frames.point, frames.tangent, frames.binormal, frames.normal
+
+
+def section_corners(bar: FlatBar) -> Floats:
+    """Return the corners (4, 2) of a section across width and thickness, counter-clockwise, (-, -) first."""
+    y, z = bar.blank.section.width / 2.0, bar.blank.section.thickness / 2.0
+    return np.array([(-y, -z), (y, -z), (y, z), (-y, z)])
+
+
+def corner_splines(bar: FlatBar) -> BSpline:
+    """Return the four long edges of a formed bar as one quintic spline into (4, 3) by the length of its centre line.
+
+    They are interpolated at the samples of the centre line, so that their mean is the centre line itself.
+    """
+    stations = bar.curve.stations
+    blank = np.column_stack([np.repeat(stations, 4), np.tile(section_corners(bar), (len(stations), 1))])
+    return make_interp_spline(stations, formed_points(bar, blank).reshape(-1, 4, 3), k=CORNER_DEGREE)
 
 
 def formed_points(plank: FlatBar, blank_points: Floats) -> Floats:

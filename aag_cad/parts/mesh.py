@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
-from aag_cad.parts.forming import formed_points
+from aag_cad.parts.forming import formed_points, section_corners
 from aag_cad.parts.model import (
     Blade,
     Bolt,
@@ -36,10 +36,8 @@ MESH_SPACING = 120.0
 
 def plank_mesh(plank: FlatBar, spacing: float = MESH_SPACING) -> Mesh:
     """Return the formed plank or bar without its holes, with a ring of four corners about every ``spacing`` mm."""
-    section = plank.blank.section
     count = max(2, math.ceil(plank.blank.length / spacing) + 1)
-    y, z = section.width / 2.0, section.thickness / 2.0
-    corners = np.array([(-y, -z), (y, -z), (y, z), (-y, z)])
+    corners = section_corners(plank)
     stations = np.repeat(np.linspace(0.0, plank.blank.length, count), 4)
     return tube(formed_points(plank, np.column_stack([stations, np.tile(corners, (count, 1))])).reshape(count, 4, 3))
 

@@ -28,6 +28,10 @@ class Frame:
     z: Vector
 
 
+# The frame of what is given in vault coordinates as it is.
+UNMOVED = Frame((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
 @dataclass(frozen=True)
 class CrossSection:
     """Rectangle of a plank: width (the larger side) and thickness, mm."""

@@ -19,13 +19,10 @@ from aag_cad.parts.members import Drilling, curve_mark
 from aag_cad.parts.model import Blank, Bolt, CrossSection, Hole, Joint, Part, Strap
 from aag_cad.units import Floats, vector
 
-# EN 1995-1-1, table 8.4: a3,t from the end of the geodesic; 5 d along the grain.
-_END_DISTANCE = 80.0
 _STEEL_END = 20.0
 _FARTHEST = 160.0
 _BACK = 10.0
 _PAST = 60.0
-_FREE = 0.2
 
 
 # Station on the strap's line, offset across it, and the plank that the bolt passes.
@@ -49,7 +46,8 @@ def _geodesic_run(design: Design, geodesic: NetworkCurve, crossing: Crossing) ->
     step, aside = 5.0 * diameter, 1.5 * diameter
     plank, edge = crossing.curves
     end, middle = geodesic.end, crossing.stations[0]
-    backs = np.arange(_END_DISTANCE, _END_DISTANCE + _FARTHEST, _BACK).tolist()
+    nearest = design.joints.loaded_end
+    backs = np.arange(nearest, nearest + _FARTHEST, _BACK).tolist()
     own = tuple(((end - back - step, 0.0, plank), (end - back, 0.0, plank)) for back in backs)
     offsets = (0.0, aside, -aside)
     pairs = tuple(((middle - step / 2.0, y, edge), (middle + step / 2.0, y, edge)) for y in offsets)
@@ -131,14 +129,14 @@ def strap_joint(
     if names[0].family == "G":
         runs = [_geodesic_run(design, curves[names[0]], crossing)]
     else:
-        nearest = _END_DISTANCE + 6.0 * design.joints.bolt_diameter
+        nearest = design.joints.loaded_end + 6.0 * design.joints.bolt_diameter
         backs = np.arange(nearest, 3.0 * nearest, 2.0 * _BACK).tolist()
         runs = [_crown_run(design, curves, crossing, back) for back in backs]
     own = {curve_mark(mark.shell, name) for name in names}
     others = [obstacle for obstacle in among if obstacle.part.mark not in own]
 
     def free(*parts: Part) -> bool:
-        return all(is_free(placed_points(part), others, _FREE) for part in parts)
+        return all(is_free(placed_points(part), others) for part in parts)
 
     def first_free(run: _Run, ways: tuple[tuple[_Place, ...], ...], side: float) -> tuple[_Place, ...] | None:
         return next((way for way in ways if free(*(_bolt(design, mark, 1, run, at, side)[0] for at in way))), None)

@@ -7,8 +7,9 @@ from itertools import pairwise
 from typing import TypeAlias
 
 from aag_cad.design_making import Stock
+from aag_cad.findings import Finding
 from aag_cad.parts.model import Hole, Plank
-from aag_cad.shop.stock import Piece, Refusal, StockRules
+from aag_cad.shop.stock import Piece, StockRules
 
 Interval: TypeAlias = tuple[float, float]
 
@@ -95,7 +96,7 @@ def _pieces(mark: str, length: float, joints: Sequence[FingerJoint], stock: Stoc
     return pieces
 
 
-def _too_long(plank: Plank, joints: Sequence[FingerJoint] | None, stock: Stock) -> Refusal:
+def _too_long(plank: Plank, joints: Sequence[FingerJoint] | None, stock: Stock) -> Finding:
     longest = board_rules(stock).longest_cut
     if joints is None:
         remedy = (
@@ -108,13 +109,13 @@ def _too_long(plank: Plank, joints: Sequence[FingerJoint] | None, stock: Stock) 
             f"finger-joint it at {where} from its start, {joints[0].clear:g} mm clear of the holes "
             "(stock.finger_joint = true), or add a longer board to stock.lengths"
         )
-    return Refusal("AAG901", plank.mark, "longer than what the longest board gives,", plank.blank.length, longest, "mm",
-                   remedy)  # fmt: skip
+    what = "longer than what the longest board gives,"
+    return Finding("AAG901", "error", plank.mark, what, plank.blank.length, longest, "mm", remedy)
 
 
 def plank_pieces(
     planks: Iterable[Plank], stock: Stock
-) -> tuple[tuple[Piece, ...], tuple[FingerJoint, ...], tuple[Refusal, ...]]:
+) -> tuple[tuple[Piece, ...], tuple[FingerJoint, ...], tuple[Finding, ...]]:
     """Return what is cut for planks, where they are finger-jointed, and those that cannot be made (AAG901).
 
     A plank that no board holds is jointed if the stock allows it; siblings of a beam are not jointed side by side.

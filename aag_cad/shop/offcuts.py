@@ -14,9 +14,9 @@ from scipy.optimize import Bounds, LinearConstraint, milp
 
 from aag_cad.design_making import Stock, Timber
 from aag_cad.errors import FileError
+from aag_cad.findings import Finding
 from aag_cad.parts.model import Blank, CrossSection, Hole, Plank
 from aag_cad.shop.passports import REUSE_HEADER
-from aag_cad.shop.stock import Refusal
 
 SAME_SIZE = 0.5
 _NODES = 300
@@ -121,7 +121,7 @@ def read_offcuts(path: str | os.PathLike[str]) -> tuple[OldPlank, ...]:
     return tuple(planks.values())
 
 
-def fitting_planks(offcuts: Iterable[OldPlank], timber: Timber) -> tuple[tuple[OldPlank, ...], tuple[Refusal, ...]]:
+def fitting_planks(offcuts: Iterable[OldPlank], timber: Timber) -> tuple[tuple[OldPlank, ...], tuple[Finding, ...]]:
     """Return the old planks that a design can be cut from, and those that it cannot (AAG902).
 
     Width and thickness must be those of the design within 0.5 mm, the species the same, the strength class not lower.
@@ -143,7 +143,7 @@ def fitting_planks(offcuts: Iterable[OldPlank], timber: Timber) -> tuple[tuple[O
             continue
         name, _, found, allowed, unit = failed[0]
         told = f"old plank of {old.species}, not {timber.species}:" if name == "species" else f"old plank, {name}"
-        refused.append(Refusal("AAG902", old.mark, told, found, allowed, unit, "leave it out of stock.offcuts"))
+        refused.append(Finding("AAG902", "note", old.mark, told, found, allowed, unit, "leave it out of stock.offcuts"))
     return tuple(fitting), tuple(refused)
 
 

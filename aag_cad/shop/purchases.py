@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from aag_cad.design import Design
+from aag_cad.findings import Finding
 from aag_cad.parts.model import (
     Blade,
     Bolt,
@@ -43,7 +44,7 @@ from aag_cad.parts.strips import flat_pattern
 from aag_cad.shop.finger_joints import FingerJoint, board_rules, plank_pieces
 from aag_cad.shop.offcuts import Reused, fitting_planks, read_offcuts, reused_planks
 from aag_cad.shop.sheets import SheetPlan, SheetRules, sheet_plan
-from aag_cad.shop.stock import CuttingPlan, Piece, Refusal, StockRules, cutting_plan
+from aag_cad.shop.stock import CuttingPlan, Piece, StockRules, cutting_plan
 from aag_cad.units import MM3_PER_M3, MM_PER_M
 
 _USES: dict[JointKind, str] = {
@@ -104,7 +105,7 @@ class Purchases:
     sheet: str
     reused: tuple[Reused, ...]
     finger_joints: tuple[FingerJoint, ...]
-    refused: tuple[Refusal, ...]
+    refused: tuple[Finding, ...]
     lines: tuple[Purchase, ...]
 
 
@@ -130,7 +131,7 @@ def _plural(parts: Iterable[Part]) -> str:
     return ", ".join(f"{name}s" for name in sorted({kind(part) for part in parts}))
 
 
-def _bars(gridshell: Gridshell, design: Design) -> tuple[list[CutStock], list[Refusal]]:
+def _bars(gridshell: Gridshell, design: Design) -> tuple[list[CutStock], list[Finding]]:
     """Return the bars of timber, aluminium and steel with their cuts, and the parts that are longer than all bars."""
     stock = design.stock
     groups: dict[tuple[str, float, float, str], list[Part]] = defaultdict(list)
@@ -150,7 +151,7 @@ def _bars(gridshell: Gridshell, design: Design) -> tuple[list[CutStock], list[Re
         )
         remedy = f"add a longer bar to stock.{key}"
         refused += [
-            Refusal("AAG901", piece.mark, f"longer than what the longest {item} gives,", piece.length,
+            Finding("AAG901", "error", piece.mark, f"longer than what the longest {item} gives,", piece.length,
                     rules.longest_cut, "mm", remedy)
             for piece in plan.refused
         ]  # fmt: skip
@@ -159,7 +160,7 @@ def _bars(gridshell: Gridshell, design: Design) -> tuple[list[CutStock], list[Re
 
 def _boards(
     planks: list[Plank], gridshell: Gridshell, design: Design
-) -> tuple[CutStock, tuple[FingerJoint, ...], tuple[Refusal, ...]]:
+) -> tuple[CutStock, tuple[FingerJoint, ...], tuple[Finding, ...]]:
     """Return the boards for new planks with their cuts, their finger joints, and the planks that no board gives."""
     stock, timber = design.stock, design.timber
     pieces, joints, refused = plank_pieces(planks, stock)

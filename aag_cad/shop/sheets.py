@@ -8,7 +8,8 @@ from typing import TypeAlias
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, milp
 
-from aag_cad.shop.stock import Piece, Refusal, StockRules, cutting_plan
+from aag_cad.findings import Finding
+from aag_cad.shop.stock import Piece, StockRules, cutting_plan
 from aag_cad.units import Floats
 
 _PATTERNS = 20_000
@@ -60,7 +61,7 @@ class SheetPlan:
     strip_area: float
     bound: float
     first_fit_decreasing: float
-    refused: tuple[Refusal, ...]
+    refused: tuple[Finding, ...]
 
     @property
     def bought(self) -> float:
@@ -229,14 +230,14 @@ def _fewest(
     return plan, 1000.0 * float(answer.mip_dual_bound or 0.0)
 
 
-def _too_large(mark: str, outline: Floats, rules: SheetRules) -> Refusal | None:
+def _too_large(mark: str, outline: Floats, rules: SheetRules) -> Finding | None:
     length, width = np.ptp(outline, axis=0).tolist()
     if width > rules.width:
         remedy = "use more geodesics, or a wider sheet in facade.sheet_width"
-        return Refusal("AAG903", mark, "width of the flat strip", width, rules.width, "mm", remedy)
+        return Finding("AAG903", "error", mark, "width of the flat strip", width, rules.width, "mm", remedy)
     if length > max(rules.lengths):
         remedy = "add a longer sheet to facade.sheet_lengths"
-        return Refusal("AAG903", mark, "length of the flat strip", length, max(rules.lengths), "mm", remedy)
+        return Finding("AAG903", "error", mark, "length of the flat strip", length, max(rules.lengths), "mm", remedy)
     return None
 
 

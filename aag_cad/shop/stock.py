@@ -29,19 +29,6 @@ Column: TypeAlias = tuple[Pattern, int]
 
 
 @dataclass(frozen=True)
-class Refusal:
-    """Something that the workshop cannot make as asked: the fields of a finding, whose severity is not told here."""
-
-    code: str
-    mark: str
-    what: str
-    found: float
-    allowed: float
-    unit: str
-    remedy: str
-
-
-@dataclass(frozen=True)
 class StockRules:
     """What is bought and how it is sawn: stock lengths, width of a saw cut, loss at each end, mm."""
 

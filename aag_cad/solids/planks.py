@@ -3,17 +3,15 @@
 import numpy as np
 from OCP.Geom import Geom_Line
 from OCP.TopoDS import TopoDS_Solid
-from scipy.interpolate import BSpline, make_interp_spline
+from scipy.interpolate import BSpline
 
 from aag_cad.errors import SolidError
-from aag_cad.parts.forming import formed_points, plank_axes
+from aag_cad.parts.forming import CORNER_DEGREE, corner_splines, plank_axes
 from aag_cad.parts.model import CrossSection, FlatBar, Hole
 from aag_cad.solids import brep
 from aag_cad.solids.board import Bore, Skin, drilled_board
 from aag_cad.solids.bores import formed_bores, require_inside
 from aag_cad.units import Floats
-
-_DEGREE = 5
 
 
 def formed_plank(plank: FlatBar) -> TopoDS_Solid:
@@ -23,7 +21,7 @@ def formed_plank(plank: FlatBar) -> TopoDS_Solid:
     cylinder along the local thickness direction, with circular rims.
     """
     _require_square_ends(plank)
-    spline = _corner_splines(plank)
+    spline = corner_splines(plank)
     bores = formed_bores(plank, spline)
     _point, tangents, widths, _thickness = plank_axes(plank, np.array([0.0, plank.blank.length]))
     corners = np.asarray(spline(np.array([0.0, plank.blank.length])))
@@ -84,23 +82,13 @@ def _sides(section: CrossSection) -> tuple[float, float, float, float]:
     return section.width, section.thickness, section.width, section.thickness
 
 
-def _corner_splines(plank: FlatBar) -> BSpline:
-    """Return the four long edges as one spline into (4, 3) by the arc length of the centre line.
-
-    They are interpolated at the samples of the centre line, so that their mean is the centre line itself.
-    """
-    stations, ring = plank.curve.stations, _section_corners(plank.blank.section)
-    blank = np.column_stack([np.repeat(stations, 4), np.tile(ring, (len(stations), 1))])
-    return make_interp_spline(stations, formed_points(plank, blank).reshape(-1, 4, 3), k=_DEGREE)
-
-
 def _formed_skin(plank: FlatBar, spline: BSpline, corners: Floats) -> Skin:
     sides, poles = _sides(plank.blank.section), spline.c
     return Skin(
         corners=corners,
-        curves=[brep.spline_curve(_DEGREE, spline.t, poles[:, j]) for j in range(4)],
+        curves=[brep.spline_curve(CORNER_DEGREE, spline.t, poles[:, j]) for j in range(4)],
         surfaces=[
-            brep.ruled_surface(_DEGREE, spline.t, poles[:, (j + 1) % 4], poles[:, j], sides[j]) for j in range(4)
+            brep.ruled_surface(CORNER_DEGREE, spline.t, poles[:, (j + 1) % 4], poles[:, j], sides[j]) for j in range(4)
         ],
         length=plank.blank.length,
         sides=sides,

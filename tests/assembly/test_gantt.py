@@ -78,4 +78,7 @@ def test_the_same_schedule_gives_the_same_chart(gridshell: Gridshell) -> None:
 
 def test_a_plan_without_steps_is_an_empty_sheet(gridshell: Gridshell) -> None:
     empty = replace(plan_of(gridshell, 4, 25.0), steps=())
-    ElementTree.fromstring(gantt_svg(empty, schedule_of(empty, {}, 4), "Nothing"))
+    sheet = ElementTree.fromstring(gantt_svg(empty, schedule_of(empty, {}, 4), "Nothing"))
+    words = "".join(sheet.itertext())
+    assert "Nothing" in words
+    assert not any(shell.mark in words for shell in gridshell.shells)

@@ -15,7 +15,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from aag_cad.export.gltf import write_glb
 from aag_cad.export.ifc import IfcOptions, write_ifc
-from aag_cad.export.ifc_schemas import IFC_SCHEMAS, IfcSchema
+from aag_cad.export.ifc_options import IFC_SCHEMAS, IfcSchema
 from aag_cad.parts.model import Gridshell, Shell, all_parts
 from aag_cad.parts.quantities import gross_volume
 from aag_cad.parts.store import gridshell_json, read_gridshell
@@ -71,6 +71,9 @@ def test_time_grows_with_the_number_of_shells(
 ) -> None:
     many = of_shells(gridshell, count)
     benchmark.pedantic(write_ifc, (many, tmp_path / "many.ifc"), rounds=1)
+    written = ifcopenshell.open(str(tmp_path / "many.ifc"))
+    shells = [e for e in written.by_type("IfcElementAssembly") if e.ObjectType == "Shell"]
+    assert len(shells) == count
 
 
 def test_ten_times_the_shells_take_at_most_twelve_times_as_long(gridshell: Gridshell, tmp_path: Path) -> None:

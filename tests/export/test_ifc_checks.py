@@ -18,7 +18,8 @@ from test_ifc_sample import sampled, sampled_steps
 
 from aag_cad.design import load_design
 from aag_cad.export.ifc import IfcOptions, ifc_model, write_ifc
-from aag_cad.export.ifc_schemas import IFC_SCHEMAS, IfcSchema, attributes_of
+from aag_cad.export.ifc_options import IFC_SCHEMAS, IfcSchema
+from aag_cad.export.ifc_schemas import attributes_of
 from aag_cad.parts.model import Gridshell
 from aag_cad.pipeline import gridshell_of
 from assembly.plan import plan_of

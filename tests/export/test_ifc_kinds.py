@@ -6,7 +6,8 @@ import ifcopenshell
 import pytest
 
 from aag_cad.export.ifc_kinds import IFC_KINDS, IfcKind
-from aag_cad.export.ifc_schemas import IFC_SCHEMAS, IfcSchema, attributes_of, type_entity, type_word
+from aag_cad.export.ifc_options import IFC_SCHEMAS, IfcSchema
+from aag_cad.export.ifc_schemas import attributes_of, type_entity, type_word
 from aag_cad.parts.model import Footing, Part, Plank, Shoe
 
 

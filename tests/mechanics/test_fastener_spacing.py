@@ -10,9 +10,9 @@ import pytest
 from aag_cad.audit import bolt_findings
 from aag_cad.design import Design, parse_design
 from aag_cad.errors import DesignError
+from aag_cad.findings import Finding
 from aag_cad.mechanics.fastener_spacing import (
     FastenerDistances,
-    Shortfall,
     bolt_distances,
     screw_distances,
     shortfalls,
@@ -75,7 +75,7 @@ def _with_holes(gridshell: Gridshell, change: Callable[[list[Hole]], list[Hole]]
     return replace(gridshell, shells=(replace(first, planks=planks), *gridshell.shells[1:]))
 
 
-def _of(gridshell: Gridshell, code: str, mark: str = "") -> Iterator[Shortfall]:
+def _of(gridshell: Gridshell, code: str, mark: str = "") -> Iterator[Finding]:
     return (item for item in shortfalls(gridshell) if item.code == code and item.mark.startswith(mark))
 
 
@@ -90,7 +90,7 @@ def test_a_slot_counts_from_its_end(gridshell: Gridshell) -> None:
         return [replace(holes[0], station=81.0, slot=4.0), *holes[1:]]
 
     (found,) = _of(_with_holes(gridshell, slotted), "AAG201", MARK)
-    assert (found.severity, found.required) == ("warning", 80.0)
+    assert (found.severity, found.allowed) == ("warning", 80.0)
     assert found.found == pytest.approx(79.0)
     assert not list(_of(_with_holes(gridshell, lambda h: [replace(h[0], station=81.0), *h[1:]]), "AAG201", MARK))
 
@@ -105,11 +105,11 @@ def test_two_holes_that_are_near_along_and_across_the_grain_are_found_once(grids
     for far in ((41.0, 0.0), (0.0, 32.0)):
         assert not list(_of(_with_holes(gridshell, moved(*far)), "AAG203", MARK))
     (near,) = _of(_with_holes(gridshell, moved(36.0, 0.0)), "AAG203", MARK)
-    assert (near.found, near.required) == pytest.approx((36.0, 40.0))
+    assert (near.found, near.allowed) == pytest.approx((36.0, 40.0))
     assert near.severity == "warning"
     assert "a block from each other along the grain, loaded (EN 1995-1-1, table 8.4, a1)" in near.what
     (worse,) = _of(_with_holes(gridshell, moved(10.0, 28.0)), "AAG203", MARK)
-    assert (worse.found, worse.required) == pytest.approx((28.0, 32.0))
+    assert (worse.found, worse.allowed) == pytest.approx((28.0, 32.0))
     assert worse.severity == "error"
     assert "table 8.4, a2" in worse.what
 
@@ -117,7 +117,7 @@ def test_two_holes_that_are_near_along_and_across_the_grain_are_found_once(grids
 def test_a_hole_wider_than_the_bolt_and_1_mm_is_an_error(gridshell: Gridshell) -> None:
     wide = _with_holes(gridshell, lambda holes: [replace(holes[0], diameter=10.0), *holes[1:]])
     found = [item for item in _of(wide, "AAG204", MARK) if item.severity == "error"]
-    assert [(item.found, item.required) for item in found] == [(10.0, 9.0)]
+    assert [(item.found, item.allowed) for item in found] == [(10.0, 9.0)]
     assert "10.4.3" in found[0].what
     assert not [item for item in _of(gridshell, "AAG204") if item.severity == "error"]
 
@@ -126,13 +126,13 @@ def test_what_a_24_mm_gap_cannot_give_is_said_with_clause_and_figure(gridshell: 
     """Screws in the 24 mm face of a block: 12 mm where 3 d = 18; bolts in the flats of studs: 6.9 where 3 d = 24."""
     named = {(item.code, item.what.split("(")[-1]): item for item in shortfalls(gridshell)}
     face = named["AAG205", "EN 1995-1-1, table 8.2, a4,c)"]
-    assert (face.found, face.required) == pytest.approx((12.0, 18.0), abs=0.06)
+    assert (face.found, face.allowed) == pytest.approx((12.0, 18.0), abs=0.06)
     assert face.severity == "warning"
     assert "612 blocks" in face.what
     flat = named["AAG206", "EN 1995-1-1, table 8.4, a4,c)"]
-    assert (flat.found, flat.required) == pytest.approx((24.0 / 2.0 / math.sqrt(3.0), 24.0))
+    assert (flat.found, flat.allowed) == pytest.approx((24.0 / 2.0 / math.sqrt(3.0), 24.0))
     block = next(item for item in _of(gridshell, "AAG205") if "M8 bolt" in item.what)
-    assert (block.found, block.required) == pytest.approx((60.0, 80.0))
+    assert (block.found, block.allowed) == pytest.approx((60.0, 80.0))
     assert block.severity == "warning"
     assert "a3,t" in block.what
 
@@ -156,7 +156,7 @@ def test_washers_thinner_than_three_tenths_of_the_bolt_are_named_once(gridshell:
         for shell in gridshell.shells
     )
     (found,) = _of(replace(gridshell, shells=thin, bolts=()), "AAG207")
-    assert (found.found, found.required) == pytest.approx((2.0, 2.4))
+    assert (found.found, found.allowed) == pytest.approx((2.0, 2.4))
     thick = tuple(
         replace(shell, bolts=tuple(replace(bolt, washer_thickness=3.0) for bolt in shell.bolts))
         for shell in gridshell.shells
@@ -178,7 +178,7 @@ def test_slots_are_cut_for_the_bolts_of_studs_only_and_stay_on_their_axes(
             assert replace(hole, slot=0.0) == plain
     assert not [f for f in bolt_findings(design, replace(slotted, shells=slotted.shells[:1])) if "-N-" in f.what]
     note = next(item for item in _of(slotted, "AAG204") if "slot" in item.what)
-    assert (note.severity, note.found, note.required) == ("note", 12.0, 9.0)
+    assert (note.severity, note.found, note.allowed) == ("note", 12.0, 9.0)
 
 
 @pytest.mark.parametrize(("length", "words"), [("0.0", "makes no slot"), ("15.5", "washer of 3 d .* at most 15")])

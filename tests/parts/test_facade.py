@@ -9,8 +9,9 @@ import pytest
 
 from aag_cad.design import Design, load_design
 from aag_cad.errors import DesignError
+from aag_cad.findings import Finding
 from aag_cad.geometry.framed import frames_at
-from aag_cad.mechanics.cover import FACADE_CHECKS, FacadeCheck
+from aag_cad.mechanics.cover import FACADE_CHECKS
 from aag_cad.network.build import shell_network
 from aag_cad.network.model import CurveNetwork
 from aag_cad.network.ridge import ridge_distance
@@ -257,7 +258,7 @@ def test_a_clearance_out_of_reach_is_refused_with_its_key(
             placed_facade(with_facade(design, **{key: value}), network, bare.shells[0])
 
 
-def checked(design: Design, gridshell: Gridshell) -> list[FacadeCheck]:
+def checked(design: Design, gridshell: Gridshell) -> list[Finding]:
     return [check for checks in FACADE_CHECKS for check in checks(design, gridshell)]
 
 

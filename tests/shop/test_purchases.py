@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from aag_cad.audit import stock_findings
 from aag_cad.design import Design
 from aag_cad.export.purchases import (
     CUTTING_HEADER,
@@ -102,7 +101,7 @@ def test_the_summary_is_plain_and_everything_cut_is_proven(purchases: Purchases)
     for value in cut.values():
         assert value["proven"]
         assert value["bound_m"] == value["bought_m"] <= value["first_fit_decreasing_m"]
-    assert not list(stock_findings(purchases))
+    assert purchases.refused == ()
 
 
 def test_the_purchase_list_is_read_back_and_the_same_each_time(
@@ -120,7 +119,7 @@ def test_the_purchase_list_is_read_back_and_the_same_each_time(
 def test_boards_that_are_too_short_are_a_finding_for_each_plank(gridshell: Gridshell, design: Design) -> None:
     stock = design.stock.model_copy(update={"lengths": (4000.0, 6000.0)})
     short = purchases_of(gridshell, design.model_copy(update={"stock": stock}))
-    findings = list(stock_findings(short))
+    findings = list(short.refused)
     long = [p.mark for shell in gridshell.shells for p in shell.planks if p.blank.length > 5980.0]
     assert sorted(finding.mark for finding in findings) == sorted(long)
     assert {finding.severity for finding in findings} == {"error"}
@@ -144,7 +143,5 @@ def test_old_planks_are_used_before_boards(gridshell: Gridshell, design: Design,
     made = purchases_of(small, design.model_copy(update={"stock": stock}))
     assert len(made.reused) == len(flat) - 1
     assert sum(len(cut.pieces) for board in made.cut[0].plan.boards for cut in board.cuts) == 1
-    assert [(finding.code, finding.mark, finding.severity) for finding in stock_findings(made)] == [
-        ("AAG902", "spare", "note")
-    ]
+    assert [(finding.code, finding.mark, finding.severity) for finding in made.refused] == [("AAG902", "spare", "note")]
     assert [line.quantity for line in made.lines if line.item == "old plank"] == [len(flat) - 1]
