@@ -83,6 +83,9 @@ def dxf_bytes(drawing: Drawing) -> bytes:
         errors = document.audit().errors
         if errors:
             raise FileError(f"{drawing.name}: the DXF drawing is not sound: {errors[0].message}; report this design")
+        # The library would register the classes in use in the order of a set, which differs from run to run.
+        for kind in sorted(document.entitydb.dxf_types_in_use()):
+            document.classes.add_class(kind)
         stream = io.StringIO()
         document.write(stream)
     data: bytes = document.encode(stream.getvalue())

@@ -1,7 +1,10 @@
 """The drawings of the blanks, read back by ezdxf and laid on the formed planks."""
 
 import math
+import os
 import re
+import subprocess
+import sys
 from collections import Counter
 from dataclasses import replace
 from itertools import pairwise
@@ -216,3 +219,20 @@ def test_texts_are_spread_in_order_with_room_between_and_no_drift(wanted: list[f
     assert math.isclose(sum(places), sum(wanted), abs_tol=1e-6)
     if all(b - a >= gap for a, b in pairwise(wanted)):
         assert np.allclose(places, wanted, atol=1e-9)
+
+
+def test_a_drawing_has_the_same_bytes_whatever_the_hash_seed() -> None:
+    """The library registers classes in the order of a set, which the seed of the process turns about."""
+    code = (
+        "import sys; from aag_cad.export.dxf import dxf_bytes; from aag_cad.export.dxf_blanks import Drawing, Line; "
+        "sys.stdout.buffer.write(dxf_bytes(Drawing('T-01', (Line('OUTLINE', (0.0, 0.0), (9.0, 5.0)),), "
+        "(0.0, 0.0, 9.0, 5.0))))"
+    )
+    written = {
+        subprocess.run(
+            [sys.executable, "-c", code], check=True, capture_output=True, env={**os.environ, "PYTHONHASHSEED": seed}
+        ).stdout
+        for seed in ("0", "1", "2", "3", "4", "5")
+    }
+    (one,) = written
+    assert b"ACDBPLACEHOLDER" in one
