@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 
 from aag_cad.design import Design
-from aag_cad.findings import Finding, Severity
+from aag_cad.findings import Finding, Severity, worst_first
 from aag_cad.mechanics.cover import FACADE_CHECKS
 from aag_cad.mechanics.fastener_spacing import shortfalls
 from aag_cad.mechanics.lamella import LamellaStress, lamella_stress
@@ -206,11 +206,10 @@ CHECKS: tuple[Check, ...] = (
     ridge_findings,
     *FACADE_CHECKS,
 )
-_ORDER = {"error": 0, "warning": 1, "note": 2}
 
 
 def audit(design: Design, gridshell: Gridshell, purchases: Purchases) -> list[Finding]:
     """Return the findings of all checks, errors first, then by code and mark."""
     found = [finding for check in CHECKS for finding in check(design, gridshell)]
     found += purchases.refused
-    return sorted(found, key=lambda f: (_ORDER[f.severity], f.code, f.mark, f.what))
+    return list(worst_first(found))

@@ -32,6 +32,7 @@ _MOST_FILES = 12
 
 DesignName = Annotated[str, typer.Argument(metavar="DESIGN", help="a design file (TOML) or a shipped name: vault")]
 Folder = Annotated[Path | None, typer.Option("-o", "--output", help="folder for the files; default: the design's name")]
+Language = Annotated[str, typer.Option("--lang", help="of the printed sheets: en or de")]
 AsJson = Annotated[bool, typer.Option("--json", help="print the summary as JSON and nothing else")]
 
 
@@ -131,7 +132,7 @@ def build(
     only: Annotated[
         str,
         typer.Option(
-            help="comma-separated outputs, such as step,ifc; web, curves, rhino and segments are written only if named"
+            help="comma-separated outputs, such as step,ifc; web, curves, rhino and graph are written only if named"
         ),
     ] = "",
     curves: Annotated[
@@ -139,6 +140,7 @@ def build(
     ] = "",
     ifc_schema: Annotated[str, typer.Option(help="IFC4, IFC4X3_ADD2 or IFC2X3")] = "IFC4",
     ifc_geometry: Annotated[str, typer.Option(help="mesh, or brep for B-spline faces of planks and bars")] = "mesh",
+    lang: Language = "en",
     as_json: AsJson = False,
 ) -> None:
     """Build a design into a folder of STEP, IFC, shop files, tables, assembly plan and pictures."""
@@ -156,7 +158,7 @@ def build(
     stages = len(MODEL_STAGES) + len(chosen_outputs(wanted))
     folder = output or Path(read.project.name)
     with _progress(stages, as_json) as report:
-        summary = run(read, folder, wanted, report, curves_from(curves) if curves else None, options).summary
+        summary = run(read, folder, wanted, report, curves_from(curves) if curves else None, options, lang).summary
     if as_json:
         print(json.dumps(summary, indent=1, ensure_ascii=False))
         return
@@ -201,23 +203,60 @@ def check(design: DesignName, as_json: AsJson = False) -> None:
 
 @app.command()
 @_user_errors
-def plan(design: DesignName, output: Folder = None, as_json: AsJson = False) -> None:
-    """Plan the assembly: plan.json, the schedule, and the printed sequence."""
-    from aag_cad.design import load_design
+def plan(
+    source: Annotated[
+        str,
+        typer.Argument(
+            metavar="DESIGN|gridshell.json|graph.json",
+            help="a design, a gridshell that a build wrote, or any graph of parts (shipped: kagome, impossible)",
+        ),
+    ],
+    output: Folder = None,
+    crew: Annotated[int | None, typer.Option(help="people, in place of those of the design")] = None,
+    transport: Annotated[
+        str, typer.Option(help="LENGTHxWIDTHxHEIGHT in mm, with xKG of load and xKG of the crane if they limit it")
+    ] = "",
+    lang: Language = "en",
+    edges_first: Annotated[
+        bool, typer.Option(help="fix the edge planks before all geodesics, as the paper does")
+    ] = True,
+    explain: Annotated[str, typer.Option(metavar="MARK", help="only say why this part comes when it does")] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Plan the assembly, the locking, the journey and the taking down; exit code 1 on a finding of severity error."""
+    from dataclasses import asdict
 
-    read = load_design(design)
-    from aag_cad.pipeline import MODEL_STAGES
-    from aag_cad.pipeline import build as run
+    from aag_cad.planning import STAGES, explained, planned_source, read_source, write_plan
+    from assembly.language import language_of
+    from assembly.plan import plan_json
+    from assembly.segment_search import limits_from
 
-    folder = output or Path(read.project.name)
-    with _progress(len(MODEL_STAGES) + 3, as_json) as report:
-        built = run(read, folder, ("plan", "schedule", "sequence"), report)
-    if as_json:
-        from assembly.plan import plan_json
-
-        print(plan_json(built.plan), end="")
+    printed, limits = language_of(lang), limits_from(transport) if transport else None
+    with _progress(2 if explain else STAGES, as_json) as report:
+        report("read")
+        read = read_source(source, crew, limits)
+        report("plan")
+        result = planned_source(read, printed, edges_first)
+        folder = output or Path(read.name)
+        files = {} if explain else write_plan(result, folder, report)
+    if explain:
+        print("\n".join(explained(result, explain)))
         return
-    Console().print(_files_table(built.summary["files"], folder))
+    if as_json:
+        print(plan_json(result.plan), end="")
+    else:
+        console = Console()
+        days = result.schedule.days
+        console.print(f"{len(result.plan.steps)} steps, {days:.1f} days for {read.crew.people}", highlight=False)
+        for order in result.locking[:1] if edges_first else ():
+            price = f"{100.0 * order.rule_price:.0f} %"
+            console.print(f"Edge planks before geodesics cost {price} of the stiffness on the way", highlight=False)
+        console.print(_findings_table([{**asdict(f), "text": f.text} for f in result.findings]))
+        console.print(_files_table(files, folder, summary=False))
+    errors = sum(finding.severity == "error" for finding in result.findings)
+    if errors:
+        print(f"aag: {errors} errors in the plan of {source}", file=sys.stderr)
+        raise typer.Exit(1)
 
 
 def _goals_for_mesh(node_angle: float | None, bottom_row: int | None, height: float | None, symmetric: bool) -> Any:

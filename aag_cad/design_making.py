@@ -144,12 +144,13 @@ class Supports(Section):
 
 
 class Transport(Section):
-    """The largest piece that travels."""
+    """The largest piece that travels, and what the crane on site lifts, kg; without ``crane`` nothing limits it."""
 
     length: Positive
     width: Positive
     height: Positive
     mass: Positive
+    crane: Positive | None = Field(None, description="kg that the crane lifts as far out as the shells stand")
 
 
 class Minutes(Section):
@@ -166,6 +167,7 @@ class Minutes(Section):
     tighten: NotNegative = Field(0.5, description="tighten a bolt and mark it")
     beam: NotNegative = Field(8.0, description="lay a beam on its line and chock it")
     geodesic: NotNegative = Field(5.0, description="lay a geodesic between its marks")
+    slide: NotNegative = Field(15.0, description="push a plank in between others that lie already")
     stud: NotNegative = Field(4.0, description="line up two beams and push the stud through")
     hoist: NotNegative = Field(720.0, description="sling, hoist, shape and prop a shell")
     edge_plank: NotNegative = Field(40.0, description="push an edge plank in and clamp it")
@@ -175,6 +177,7 @@ class Minutes(Section):
     rod: NotNegative = Field(3.0, description="set the nuts of a threaded rod to height")
     shoe: NotNegative = Field(6.0, description="set a shoe on its rod")
     stand: NotNegative = Field(720.0, description="carry a shell to its feet, lower and prop it")
+    extra: NotNegative = Field(20.0, description="put in or take out a splice block, a plate or a brace with its bolts")
     ridge: NotNegative = Field(120.0, description="draw two shells together along their ridge")
     blade: NotNegative = Field(8.0, description="fit a blade")
     mullion: NotNegative = Field(10.0, description="bend a mullion into place")

@@ -35,6 +35,37 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         ) from error
 
 
+def sizes_below(folder: Path) -> dict[str, int]:
+    """Return the size in bytes of every file in a folder and those below it, by its path from there, sorted."""
+    paths = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
+    return {name: paths[name].stat().st_size for name in sorted(paths)}
+
+
+@contextmanager
+def publishing(folder: Path) -> Iterator[Path]:
+    """Yield a temporary folder inside ``folder``, then move all files in it to their places.
+
+    If the block raises, nothing is moved and nothing left behind; FileError if the folder cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        holder = tempfile.TemporaryDirectory(prefix=".aag-", dir=folder)
+    except OSError as error:
+        raise FileError(
+            f"{folder}: cannot be written: {error.strerror}; name a folder that is yours with -o"
+        ) from error
+    with holder as name:
+        staging = Path(name)
+        yield staging
+        for path in sizes_below(staging):
+            target = folder / path
+            try:
+                target.parent.mkdir(parents=True, exist_ok=True)
+                os.replace(staging / path, target)
+            except OSError as error:
+                raise FileError(f"{target}: cannot be written: {error.strerror}") from error
+
+
 def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
     """Write bytes to a file as a whole; FileError if it cannot be written."""
     with replacing(path) as draft:

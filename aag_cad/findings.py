@@ -1,9 +1,12 @@
 """What a check finds: one record for the audit and for everything that feeds it."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 Severity: TypeAlias = Literal["error", "warning", "note"]
+
+_ORDER: dict[Severity, int] = {"error": 0, "warning": 1, "note": 2}
 
 
 @dataclass(frozen=True)
@@ -24,3 +27,8 @@ class Finding:
         """The finding in one line."""
         unit = f" {self.unit}" if self.unit else ""
         return f"{self.mark}: {self.what} {self.found:.4g}{unit}, allowed {self.allowed:.4g}{unit}; {self.remedy}"
+
+
+def worst_first(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Return findings sorted: errors first, then by code and mark."""
+    return tuple(sorted(findings, key=lambda f: (_ORDER[f.severity], f.code, f.mark, f.what)))

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from datetime import date
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -17,15 +16,15 @@ from aag_cad.web.obj import web_obj
 from aag_cad.worked import Model
 
 if TYPE_CHECKING:
-    from assembly.plan import Plan
+    from assembly.planned import Planned
 
 
 @dataclass(frozen=True)
 class Dossier:
-    """What the outputs of a build are written from: the model, the plan of its assembly, what is bought for it."""
+    """What the outputs of a build are written from: the model, what is planned and what is bought for it."""
 
     model: Model
-    plan: "Plan"
+    planned: "Planned"
     purchases: Purchases
     ifc: IfcOptions
 
@@ -54,7 +53,7 @@ def _write_ifc(dossier: Dossier, folder: Path) -> None:
     options = replace(
         dossier.ifc, site=design.site, author=project.author, organisation=project.organisation, crew=design.crew
     )
-    write_ifc(gridshell, folder / f"{gridshell.name}.ifc", dossier.plan.steps, options)
+    write_ifc(gridshell, folder / f"{gridshell.name}.ifc", dossier.planned.plan.steps, options)
 
 
 def _write_glb(dossier: Dossier, folder: Path) -> None:
@@ -119,58 +118,15 @@ def _write_facade(dossier: Dossier, folder: Path) -> None:
     write_facade_table(dossier.model.design, dossier.model.gridshell, folder / "tables" / "facade.csv")
 
 
-def _write_plan(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.files import write_text
-    from assembly.plan import plan_json
+def _plan_writer(name: str) -> Writer:
+    """Return the writer of an output of the plan."""
 
-    write_text(folder / "plan.json", plan_json(dossier.plan))
+    def write(dossier: Dossier, folder: Path) -> None:
+        from aag_cad.export.planning import PLAN_WRITERS, Planning
 
+        PLAN_WRITERS[name](Planning(dossier.planned, dossier.model.gridshell, dossier.model.design.crew), folder)
 
-def _write_schedule(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.files import write_text
-    from assembly.disassembly import disassembly_of
-    from assembly.durations import step_minutes
-    from assembly.gantt import gantt_svg
-    from assembly.ical import write_calendar
-    from assembly.plan import plan_json
-    from assembly.schedule import schedule_csv, schedule_of
-
-    gridshell, crew = dossier.model.gridshell, dossier.model.design.crew
-    minutes = step_minutes(dossier.plan, gridshell, crew.minutes)
-    schedule = schedule_of(dossier.plan, minutes, crew.people, crew.hours_per_day)
-    write_text(folder / "tables" / "schedule.csv", schedule_csv(dossier.plan, schedule))
-    write_text(folder / "schedule.svg", gantt_svg(dossier.plan, schedule, gridshell.title))
-    if crew.start is not None:
-        start = date.fromisoformat(crew.start)
-        write_calendar(dossier.plan, schedule, start, folder / "schedule.ics", crew.days_per_week)
-    down = disassembly_of(gridshell, crew.people, crew.lift_limit)
-    write_text(folder / "disassembly.json", plan_json(down))
-
-
-def _write_locking(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.tables import write_locking_table
-    from aag_cad.files import write_text
-    from assembly.locking import locking_orders, locking_svg
-
-    orders = locking_orders(dossier.model.gridshell)
-    write_locking_table(orders, folder / "tables" / "locking.csv")
-    write_text(folder / "locking.svg", locking_svg(orders[0]))
-
-
-def _write_segments(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.tables import write_segment_tables
-    from assembly.segment_search import Limits
-    from assembly.segments import segments
-
-    truck = dossier.model.design.transport
-    found = segments(dossier.model.gridshell, Limits(truck.length, truck.width, truck.height, truck.mass))
-    write_segment_tables(found, folder / "tables" / "segments.csv", folder / "tables" / "splices.csv")
-
-
-def _write_sequence(dossier: Dossier, folder: Path) -> None:
-    from assembly.printout import write_sequence
-
-    write_sequence(dossier.plan, dossier.model.gridshell, folder / "sequence.pdf")
+    return write
 
 
 def _write_overview(dossier: Dossier, folder: Path) -> None:
@@ -214,10 +170,11 @@ OUTPUTS: dict[str, Writer] = {
     "btlx": _write_btlx,
     "passports": _write_passports,
     "facade": _write_facade,
-    "plan": _write_plan,
-    "schedule": _write_schedule,
-    "locking": _write_locking,
-    "sequence": _write_sequence,
+    "plan": _plan_writer("plan"),
+    "schedule": _plan_writer("schedule"),
+    "locking": _plan_writer("locking"),
+    "segments": _plan_writer("segments"),
+    "sequence": _plan_writer("sequence"),
     "overview": _write_overview,
 }
 # Written only if named: for designers who go on in other programs.
@@ -225,7 +182,7 @@ EXTRA_OUTPUTS: dict[str, Writer] = {
     "web": _write_web,
     "curves": _write_curves,
     "rhino": _write_rhino,
-    "segments": _write_segments,
+    "graph": _plan_writer("graph"),
 }
 EVERY_OUTPUT = OUTPUTS | EXTRA_OUTPUTS
 # Outputs whose library comes with an extra of the package, by output: (module, extra).

@@ -1,7 +1,5 @@
 """The whole way in one place: design -> surface -> web -> curves -> parts -> findings and plan -> files."""
 
-import os
-import tempfile
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -22,7 +20,8 @@ from aag_cad.design_sections import (
 )
 from aag_cad.errors import DesignError, FileError
 from aag_cad.export.ifc_options import IfcOptions, require_known
-from aag_cad.findings import Finding
+from aag_cad.files import publishing, sizes_below
+from aag_cad.findings import Finding, worst_first
 from aag_cad.geometry.profiles import ArcProfile, CrpcProfile, HyperboloidProfile, Profile, SplineProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.geometry.surface import Chart
@@ -46,7 +45,7 @@ from aag_cad.web.web import Web, crpc_web, sampled_web
 from aag_cad.worked import Model
 
 if TYPE_CHECKING:
-    from assembly.plan import Plan
+    from assembly.planned import Planned
 
 Report = Callable[[str], None]
 IterationReport = Callable[[Iteration], None]
@@ -54,11 +53,11 @@ IterationReport = Callable[[Iteration], None]
 
 @dataclass(frozen=True)
 class Build:
-    """A model with its findings, its assembly plan, and the summary that was written beside the files."""
+    """A model with its findings, what is planned for it, and the summary that was written beside the files."""
 
     model: Model
     findings: tuple[Finding, ...]
-    plan: "Plan"
+    planned: "Planned"
     summary: dict[str, Any]
 
 
@@ -185,31 +184,6 @@ def gridshell_of(design: Design) -> Gridshell:
 MODEL_STAGES = ("web", "curves", "parts", "stock", "audit", "assembly")
 
 
-def _staging(folder: Path) -> "tempfile.TemporaryDirectory[str]":
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        return tempfile.TemporaryDirectory(prefix=".aag-", dir=folder)
-    except OSError as error:
-        raise FileError(
-            f"{folder}: cannot be written: {error.strerror}; name a folder that is yours with -o"
-        ) from error
-
-
-def _files_below(folder: Path) -> list[str]:
-    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
-
-
-def _publish(staging: Path, folder: Path) -> None:
-    """Move all files from the staging folder to their places."""
-    for name in _files_below(staging):
-        target = folder / name
-        try:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            os.replace(staging / name, target)
-        except OSError as error:
-            raise FileError(f"{target}: cannot be written: {error.strerror}") from error
-
-
 def build(
     design: Design,
     folder: Path,
@@ -217,17 +191,21 @@ def build(
     report: Report = lambda stage: None,
     given_curves: CurveNetwork | None = None,
     ifc: IfcOptions | None = None,
+    language: str = "en",
 ) -> Build:
     """Build a design into a folder and return what was built.
 
     Every file is written into a temporary folder first and moved when all are whole, so that an error leaves nothing
-    behind. ``report`` is called with the name of each stage as it begins. FileError if the folder cannot be written.
+    behind. ``report`` is called with the name of each stage as it begins. FileError if the folder cannot be written,
+    PlanError if the sheets are not printed in ``language``.
     """
     from aag_cad.export.summary import summary_of, write_summary
-    from assembly.plan import plan_of
+    from assembly.language import language_of
+    from assembly.planned import limits_of, planned_of
 
     outputs, ifc_options = chosen_outputs(only), ifc or IfcOptions()
     require_known(ifc_options)
+    printed = language_of(language)
     begun: list[tuple[str, float]] = []
 
     def begin(stage: str) -> None:
@@ -235,22 +213,20 @@ def build(
         report(stage)
 
     model = model_of(design, begin, given_curves)
-    with _staging(folder) as name:
-        staging = Path(name)
+    with publishing(folder) as staging:
         begin("stock")
         purchases = purchases_of(model.gridshell, design)
         begin("audit")
-        findings = tuple(audit(design, model.gridshell, purchases))
+        checked = audit(design, model.gridshell, purchases)
         begin("assembly")
-        plan = plan_of(model.gridshell, design.crew.people, design.crew.lift_limit)
-        dossier = Dossier(model, plan, purchases, ifc_options)
+        planned = planned_of(model.gridshell, design.crew, limits_of(design.transport), printed)
+        findings = worst_first([*checked, *planned.plan.findings])
+        dossier = Dossier(model, planned, purchases, ifc_options)
         for output in outputs:
             begin(output)
             EVERY_OUTPUT[output](dossier, staging)
         ends = [start for _, start in begun[1:]] + [time.perf_counter()]
         seconds = {stage: end - start for (stage, start), end in zip(begun, ends, strict=True)}
-        sizes = {path: (staging / path).stat().st_size for path in _files_below(staging)}
-        summary = summary_of(model, findings, plan, purchases, sizes, seconds)
+        summary = summary_of(model, findings, planned.plan, purchases, sizes_below(staging), seconds)
         write_summary(summary, staging / "summary.json")
-        _publish(staging, folder)
-    return Build(model, findings, plan, summary)
+    return Build(model, findings, planned, summary)

@@ -10,142 +10,35 @@ import numpy as np
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.parts.model import Bolt, Gridshell, Rod, Shell, Timber
 from aag_cad.units import MM_PER_M
-from assembly.crew import crew_of, hands_for
+from assembly.crew import Crew, crew_of, hands_for
 from assembly.flat import flat_order, groups_of
 from assembly.kit import Kit, shell_kit
+from assembly.language import Language, say, says
 from assembly.layers import crossing_levels, lying_unit
 from assembly.plan import piece_weights
 from assembly.process import BEAMS_A_STEP, EVERYONE, LAID_A_STEP, PAIR
 from assembly.ranges import joined_ranges
 from assembly.site import ridge_pairs
 from assembly.steps import DownPhase, Plan, Step
+from assembly.wording import Wording, spanners
 
 _PAIRS_A_STEP = 4
 _GRAVITY = 9.81
 # Shells that these steps work on stay where they are.
 _STAYING: tuple[DownPhase, ...] = ("prop", "open ridges")
 _EACH_HELD: tuple[DownPhase, ...] = ("prop", "lift off", "hang", "lower")
-
-# Tools, instructions and what to check after each phase.
-_WORDS: dict[DownPhase, tuple[tuple[str, ...], tuple[str, ...], str]] = {
-    "uncover": (
-        ("cordless driver", "roof ladder", "slings"),
-        (
-            "Drive out the screws at the V marks; hold the clamping bar (D) until the last one is out.",
-            "Take off clamping bars, strips (P), mullions (M) and the blocks on the geodesics, in this order.",
-            "Strips and bars spring straight as they come free: two people, one at each end.",
-        ),
-        "Nothing but timber and steel is left on the shell.",
-    ),
-    "prop": (
-        ("props with forked heads", "base plates", "tape measure", "level"),
-        (
-            "Stand a prop under every second node along each ridge plank and one row under the middle of the shell.",
-            "Turn the props up until each one bears and no further: they take over, they do not lift.",
-        ),
-        "Every prop bears and stands on its plate. No ridge is opened before all shells are propped.",
-    ),
-    "open ridges": (
-        ("working platform", "clamps", "{spanners}"),
-        (
-            "Hold the two ridge planks together with clamps beside each blade.",
-            "Take the blades out from the entry up to the crown, the crown last; then ease the clamps off evenly.",
-        ),
-        "Nobody under the crown. The gap opens by no more than 20 mm; if it opens farther, turn up the props.",
-    ),
-    "lift off": (
-        ("lorry with crane", "soft slings", "tag lines", "{spanners}"),
-        (
-            "Sling the shell at the four nodes marked H until the slings bear its weight.",
-            "Take out the bolts between the shoes (F) and the shell, from the sides to the middle.",
-            "Lift the shell off its shoes and its props and set it down on the levelled floor, foot line on chocks.",
-        ),
-        "The shells that still stand bear on their props. This one stands on its foot line and is tied.",
-    ),
-    "clear feet": (
-        ("{spanners}", "spade", "lifting gear"),
-        ("Take the shoes off their rods, the rods out of the blocks and the blocks (C) out of the ground.",),
-        "All feet are counted; the ground is filled.",
-    ),
-    "hang": (
-        ("crane or four chain hoists", "soft slings", "props", "tag lines", "tape measure"),
-        (
-            "Hang the shell at the four nodes marked H, round the crossing and never round a single plank.",
-            "Take up the slings until they bear half the weight; prop the middle and chock the foot line sideways.",
-            "{spring}",
-        ),
-        "Four slings bear, the chocks hold the foot line. From here on the slings hold the shape.",
-    ),
-    "release geodesics": (
-        ("cordless driver", "clamps"),
-        (
-            "Drive out the screws at the K marks of these geodesics, in pairs from the middle to the sides.",
-            "Leave the stud bolts tight: they keep the beams from turning while the screws come out.",
-            "A screw that binds bears load: take up the nearest sling first.",
-        ),
-        "Each geodesic slides by hand. The slings have not slackened.",
-    ),
-    "pull edge planks": (
-        ("cordless driver", "clamps", "{spanners}"),
-        (
-            "Clamp the edge plank, take off the straps (R) with their bolts, then drive out its screws from both ends.",
-            "Ease the clamps off and pull the plank out lengthwise; it springs straight.",
-        ),
-        "No edge plank is left between the beams.",
-    ),
-    "lower": (
-        ("crane or four chain hoists", "{spanners}", "tag lines", "chocks"),
-        (
-            "Loosen the nuts of all studs by two turns, from outside, row by row from the top down, none of them off.",
-            "The beams turn about the studs and the sides move out: wait until they rest before the next row.",
-            "Take away the props, nobody under the shell, then let all slings down evenly and let the sides move out.",
-            "Watch the geodesics: each slides between the beams. Free one that binds before going on.",
-            "Do not leave the shell loosened in its slings: it lies flat before the end of the day.",
-        ),
-        "The shell lies flat on its lower beams; the slings are off.",
-    ),
-    "take off beams": (
-        ("{spanners}", "mallet", "trestles"),
-        (
-            "{studs}",
-            "Lift each beam straight off and carry it to its trestles, in the order of the marks above.",
-        ),
-        "Marks are legible on every beam.",
-    ),
-    "take off geodesics": (
-        ("trestles",),
-        ("Lift the geodesic planks off and carry them to their stack, flat.",),
-        "The stack lies flat and dry; marks are legible.",
-    ),
-    "pull studs": (
-        ("{spanners}", "drift pin", "mallet"),
-        ("On the trestles take out the bolts of each stud and push the stud out of the gap.",),
-        "Studs, bolts and washers are counted into their boxes.",
-    ),
-    "unbolt": (
-        ("{spanners}", "clamps"),
-        (
-            "Clamp the two planks, take out the block bolts, then ease the clamps off.",
-            "Lay planks L and R to their marks; blocks and bolts into their boxes.",
-        ),
-        "No plank without its mark.",
-    ),
-    "passports": (
-        ("tape measure", "straight edge", "moisture meter"),
-        (
-            "Lay each plank on the straight edge: measure what is left of bend and twist, its length and its moisture.",
-            "Look for splits at the holes. Write all into the plank's reuse passport, or mark the plank as waste.",
-        ),
-        "Every plank has its passport.",
-    ),
-}
+# Their tools lift already.
+_LIFTED_BY_GEAR: tuple[DownPhase, ...] = ("lift off", "clear feet", "hang", "lower")
 
 
 @dataclass(frozen=True)
 class _Task:
+    """A step without its words and hands; ``title`` is a key of the titles, ``named`` what is filled in."""
+
     id: str
     phase: DownPhase
     title: str
+    named: Mapping[str, object]
     shell: str
     after: tuple[str, ...]
     marks: tuple[str, ...] = ()
@@ -180,25 +73,25 @@ def _site_tasks(gridshell: Gridshell, kits: Mapping[str, Kit]) -> Iterator[_Task
     for mark, kit in kits.items():
         if kit.cover:
             bare.append(f"site.down.cover.{mark}")
-            yield _Task(bare[-1], "uncover", f"Take the cover off shell {mark}", "", (), kit.cover[::-1])
+            yield _Task(bare[-1], "uncover", "uncover", {"shell": mark}, "", (), kit.cover[::-1])
     for mark in kits:
-        yield _Task(f"site.down.prop.{mark}", "prop", f"Prop shell {mark}", "", tuple(bare), (), (mark,))
+        yield _Task(f"site.down.prop.{mark}", "prop", "prop", {"shell": mark}, "", tuple(bare), (), (mark,))
     before = propped = tuple(f"site.down.prop.{mark}" for mark in kits)
     for a, b in reversed(ridge_pairs(gridshell)):
         blades = [joint for joint in gridshell.joints if {f"S{digit}" for digit in joint.mark[1:3]} == {a, b}]
         marks = (*_flat(joint.fasteners for joint in blades), *(joint.mark for joint in blades))
-        task_id, title = f"site.down.ridge.{a}.{b}", f"Open the ridge between shells {a} and {b}"
-        yield _Task(task_id, "open ridges", title, "", before, marks, (a, b), 2 * PAIR)
+        task_id = f"site.down.ridge.{a}.{b}"
+        yield _Task(task_id, "open ridges", "ridge", {"a": a, "b": b}, "", before, marks, (a, b), 2 * PAIR)
         before = (task_id,)
     open_ridges = before
     for mark, kit in kits.items():
         after = tuple(dict.fromkeys((*propped, *open_ridges)))
-        title = f"Lift shell {mark} off its shoes"
-        yield _Task(f"site.down.lift.{mark}", "lift off", title, "", after, kit.standing[::-1], (mark,), EVERYONE)
+        task_id, out = f"site.down.lift.{mark}", kit.standing[::-1]
+        yield _Task(task_id, "lift off", "lift", {"shell": mark}, "", after, out, (mark,), EVERYONE)
     feet = _flat(kit.feet[::-1] for kit in kits.values())
     if feet:
         lifts = tuple(f"site.down.lift.{mark}" for mark in kits)
-        yield _Task("site.down.feet", "clear feet", "Clear the feet of the vault", "", lifts, feet)
+        yield _Task("site.down.feet", "clear feet", "feet", {}, "", lifts, feet)
 
 
 def _unlocking(shell: str, flat: Sequence[str], kit: Kit, hoists: tuple[str, ...]) -> Iterator[_Task]:
@@ -208,8 +101,8 @@ def _unlocking(shell: str, flat: Sequence[str], kit: Kit, hoists: tuple[str, ...
     step that sets the hoists free.
     """
     hang = f"{shell}.down.hang"
-    yield _Task(hang, "hang", f"Hang shell {shell} at its hoist points", shell, (f"site.down.lift.{shell}", *hoists),
-                (), (shell,), EVERYONE)  # fmt: skip
+    named = {"shell": shell}
+    yield _Task(hang, "hang", "hang", named, shell, (f"site.down.lift.{shell}", *hoists), (), (shell,), EVERYONE)
     before, i = hang, 0
     for side, screws in (("inside", kit.inside), ("outside", kit.outside)):
         held = [mark for mark in flat if screws[mark]]
@@ -217,19 +110,18 @@ def _unlocking(shell: str, flat: Sequence[str], kit: Kit, hoists: tuple[str, ...
         pairs = [tuple(dict.fromkeys((held[k], held[-1 - k]))) for k in reversed(range(half))]
         for group in groups_of(pairs, _PAIRS_A_STEP):
             i, marks = i + 1, _flat(group)
-            title = f"Release geodesics {joined_ranges(marks)} from {side}"
+            told = {"marks": joined_ranges(marks)}
             task_id, out = f"{shell}.down.release.{i}", _flat(screws[mark][::-1] for mark in marks)
-            yield _Task(task_id, "release geodesics", title, shell, (before,), out)
+            yield _Task(task_id, "release geodesics", f"release_{side}", told, shell, (before,), out)
             before = task_id
     upper = tuple(mark for mark in kit.edges if mark not in kit.lower_edges)
     for name, planks in (("upper", upper), ("lower", kit.lower_edges)):
         if planks:
-            title = f"Pull the {name} edge {'plank' if len(planks) == 1 else 'planks'} {joined_ranges(planks)}"
+            title, told = f"{name}_{'edge' if len(planks) == 1 else 'edges'}", {"marks": joined_ranges(planks)}
             task_id, out = f"{shell}.down.edge.{name}", _flat((*kit.edges[mark][::-1], mark) for mark in planks)
-            yield _Task(task_id, "pull edge planks", title, shell, (before,), out, (), 2 * PAIR)
+            yield _Task(task_id, "pull edge planks", title, told, shell, (before,), out, (), 2 * PAIR)
             before = task_id
-    title = f"Loosen the studs and lower shell {shell} flat"
-    yield _Task(f"{shell}.down.lower", "lower", title, shell, (before,), (), (shell,), EVERYONE)
+    yield _Task(f"{shell}.down.lower", "lower", "lower", named, shell, (before,), (), (shell,), EVERYONE)
 
 
 @dataclass(frozen=True)
@@ -267,8 +159,8 @@ def _dismantling(shell: Shell, runs: Sequence[Sequence[str]], kit: Kit) -> Itera
         loose = tuple(unit for unit in group if unit not in kit.beams)
         task_id, bolts = f"{name}.down.off.{i}", _flat(studs.upper.get(beam, ()) for beam in beams)
         what: DownPhase = "take off beams" if beams else "take off geodesics"
-        title = f"Take off {'beams' if beams else 'geodesics'} {joined_ranges(group)}"
-        yield _Task(task_id, what, title, name, (before,), (*bolts, *loose), beams)
+        title, told = "beams" if beams else "geodesics", {"marks": joined_ranges(group)}
+        yield _Task(task_id, what, title, told, name, (before,), (*bolts, *loose), beams)
         off |= dict.fromkeys(group, task_id)
         before = task_id
     ends = [before]
@@ -276,54 +168,83 @@ def _dismantling(shell: Shell, runs: Sequence[Sequence[str]], kit: Kit) -> Itera
     for k, group in enumerate(groups, start=1):
         taken = tuple(dict.fromkeys(off[beam] for beam in group))
         pulled = [stud for beam in group for stud in studs.lowest.get(beam, ())]
+        told = {"marks": joined_ranges(group)}
         if pulled:
-            title, out = f"Pull the studs of beams {joined_ranges(group)}", _flat((*studs.last[s], s) for s in pulled)
-            yield _Task(f"{name}.down.stud.{k}", "pull studs", title, name, taken, out)
+            out = _flat((*studs.last[s], s) for s in pulled)
+            yield _Task(f"{name}.down.stud.{k}", "pull studs", "studs", told, name, taken, out)
             taken = (f"{name}.down.stud.{k}",)
         out = _flat(kit.beams[beam][::-1] for beam in group)
-        yield _Task(f"{name}.down.unbolt.{k}", "unbolt", f"Unbolt beams {joined_ranges(group)}", name, taken, out)
+        yield _Task(f"{name}.down.unbolt.{k}", "unbolt", "unbolt", told, name, taken, out)
         ends.append(f"{name}.down.unbolt.{k}")
     planks = tuple(sorted(plank.mark for plank in shell.planks))
-    title = f"Measure the {len(planks)} planks of shell {name} into their passports"
-    yield _Task(f"{name}.down.measure", "passports", title, name, tuple(ends), (), planks)
+    counted = {"count": len(planks), "shell": name}
+    yield _Task(f"{name}.down.measure", "passports", "passports", counted, name, tuple(ends), (), planks)
 
 
 def _words(
-    gridshell: Gridshell, task: _Task, weights: Mapping[str, tuple[float, float]]
-) -> tuple[tuple[str, ...], ...]:
-    """Return tools, instructions and (hold,) of a task, with sizes of spanners and the energy of a hanging shell."""
+    gridshell: Gridshell, task: _Task, weights: Mapping[str, tuple[float, float]], language: Language
+) -> Wording:
+    """Return the words of a task, with sizes of spanners and the energy of a hanging shell."""
     listed: list[Bolt | Rod] = [*gridshell.bolts]
     for shell in gridshell.shells:
         listed += [*shell.bolts, *shell.rods]
     leaving = set(task.marks)
     out = [part for part in listed if part.mark in leaving]
     held = [bolt for shell in gridshell.shells if shell.mark == task.shell for bolt in shell.bolts]
-    sizes = sorted({part.across_flats for part in (out or held) if isinstance(part, Bolt | Rod)})
     spring = ""
     if task.phase == "hang":
         shell = next(shell for shell in gridshell.shells if shell.mark == task.shell)
         energy, kg = stored_energy(shell, gridshell.timber), weights[shell.mark][0]
-        spring = (
-            f"It will spring back towards flat: its planks hold up to {energy:.0f} J of bending and twisting, as much "
-            f"as its {kg:.0f} kg lifted by {energy / (kg * _GRAVITY) * MM_PER_M:.0f} mm."
-        )
+        lift = energy / (kg * _GRAVITY) * MM_PER_M
+        spring = say(language, "down.words.spring", energy=f"{energy:.0f}", mass=f"{kg:.0f}", lift=f"{lift:.0f}")
     figures = {
-        "spanners": " and ".join(f"two {size:g} mm spanners" for size in sizes) or "two spanners",
+        "spanners": spanners(out or held, language),
         "spring": spring,
-        "studs": "Take out the bolts that join these beams to the studs; do not touch the other bolts."
-        if task.marks
-        else "The studs stay in these beams until they lie on trestles.",
+        "studs": say(language, f"down.words.{'studs_out' if task.marks else 'studs_stay'}"),
     }
-    tools, instructions, hold = _WORDS[task.phase]
-    return tuple(t.format_map(figures) for t in tools), tuple(t.format_map(figures) for t in instructions), (hold,)
+    return Wording(
+        tools=says(language, f"down.{task.phase}.tools", **figures),
+        instructions=says(language, f"down.{task.phase}.instructions", **figures),
+        hold=say(language, f"down.{task.phase}.hold", **figures),
+    )
 
 
-def disassembly_of(gridshell: Gridshell, people: int, lift_limit: float) -> Plan:
+def _step(
+    task: _Task,
+    number: int,
+    last: bool,
+    words: Wording,
+    crew: Crew,
+    weights: Mapping[str, tuple[float, float]],
+    language: Language,
+) -> Step:
+    """Return the step of a task, with the hands for its heaviest and longest piece."""
+    pieces = [weights[mark] for mark in (*task.marks, *(() if task.phase in _STAYING else task.assemblies))]
+    hands = hands_for(crew, max((m for m, _ in pieces), default=0.0), max((n for _, n in pieces), default=0.0))
+    gear = hands.gear and task.least_crew <= crew.people and task.phase not in _LIFTED_BY_GEAR
+    return Step(
+        number=number,
+        id=task.id,
+        phase=task.phase,
+        title=say(language, f"down.titles.{task.title}", **task.named),
+        shell=task.shell,
+        marks=task.marks,
+        assemblies=task.assemblies,
+        tools=(*words.tools, say(language, "down.words.gear")) if gear else words.tools,
+        crew=max(hands.people, min(task.least_crew, crew.people)),
+        predecessors=task.after,
+        instructions=words.instructions,
+        hold=words.hold if last else "",
+    )
+
+
+def disassembly_of(gridshell: Gridshell, people: int, lift_limit: float, *, language: Language = "en") -> Plan:
     """Return the plan of taking a gridshell down for reuse, by ``people`` who lift at most ``lift_limit`` kg each.
 
     ``marks`` are the parts that leave in a step, in the order in which they do. Cover off, all shells propped, ridges
     opened, each shell lifted off, released while it hangs, lowered flat, taken apart and measured (paper, section 5).
-    One set of hoists serves all shells, so that one hangs at a time.
+    One set of hoists serves all shells, so that one hangs at a time. The texts are those of
+    ``templates/printouts/words/down.toml``.
 
     PlanError if the layers are woven in a circle, a part belongs to no joint, or the crew is empty.
     """
@@ -339,23 +260,7 @@ def disassembly_of(gridshell: Gridshell, people: int, lift_limit: float) -> Plan
     steps: list[Step] = []
     for tasks in chapters:
         for i, task in enumerate(tasks):
-            pieces = [weights[mark] for mark in (*task.marks, *(() if task.phase in _STAYING else task.assemblies))]
-            hands = hands_for(crew, max((m for m, _ in pieces), default=0.0), max((n for _, n in pieces), default=0.0))
-            tools, instructions, (hold,) = _words(gridshell, task, weights)
             last = task.phase in _EACH_HELD or all(later.phase != task.phase for later in tasks[i + 1 :])
-            gear = hands.gear and task.least_crew <= people and not any("crane" in t or "gear" in t for t in tools)
-            steps.append(Step(
-                number=len(steps) + 1,
-                id=task.id,
-                phase=task.phase,
-                title=task.title,
-                shell=task.shell,
-                marks=task.marks,
-                assemblies=task.assemblies,
-                tools=(*tools, "lifting gear") if gear else tools,
-                crew=max(hands.people, min(task.least_crew, people)),
-                predecessors=task.after,
-                instructions=instructions,
-                hold=hold if last else "",
-            ))  # fmt: skip
-    return Plan(gridshell.name, tuple(steps))
+            words = _words(gridshell, task, weights, language)
+            steps.append(_step(task, len(steps) + 1, last, words, crew, weights, language))
+    return Plan(gridshell.name, tuple(steps), language)

@@ -107,6 +107,8 @@ def _work_with(known: _Lengths, step: Step) -> StepWork:
         done[_ONCE[phase]] += 1
     handled["ridge"] += phase in ("ridges", "open ridges")
     handled["hoist"] += phase == "hang"
+    handled["slide"] += phase == "slide"
+    done["extra"] += len(step.extras)
     undone = dict(handled) if down else {}
     for kind, count in ({} if down else handled).items():
         done[kind] += count

@@ -1,28 +1,83 @@
-"""The order in which a shell is laid out flat: beams and geodesics layer by layer, then the studs row by row."""
+"""The order in which a shell is laid out flat: run by run of beams and geodesics, then what is slid in, then the studs.
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+It takes the fewest walked metres (``assembly.walking``) and handles each long piece once, a slid one twice.
+"""
+
+from collections import defaultdict
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import groupby, pairwise
-from typing import TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
+import networkx as nx
 import numpy as np
 
 from aag_cad.parts.model import Shell, Stud
-from assembly.layers import layer_precedence, laying_order, lying_unit
-from assembly.view import sweep_direction
+from aag_cad.units import MM_PER_M, Floats
+from assembly.crew import LONG_PIECE
+from assembly.errors import PlanError
+from assembly.footpath import shorter_path
+from assembly.interlacing import Slide
+from assembly.layers import layer_precedence, lying_unit
+from assembly.view import shell_view, sweep_direction
+from assembly.walking import (
+    Line,
+    Point,
+    alternated,
+    best_plane,
+    best_stack,
+    on_floor,
+    path_length,
+    serpentine,
+    spanning_tree_length,
+    stack_places,
+    stepped_over,
+    sweep_order,
+)
+
+if TYPE_CHECKING:
+    from assembly.interlacing import Interlacing
 
 _T = TypeVar("_T")
+# Shell, layer, family: what lies on one stack, and is laid in one run where nothing of it waits for something else.
+_Sort: TypeAlias = tuple[str, int, str]
+
+# A path that saves less than this share keeps to whole rows, which a crew finds without a map.
+_WORTH_LEAVING_ROWS = 0.01
+EDGE_FAMILY = "E"
+STUD_KIND = "stud"
 
 
 @dataclass(frozen=True)
 class FlatOrder:
-    """Runs of beams or geodesics that are laid one after the other, each run in one layer; rows of studs, foot first.
+    """Runs of beams or geodesics that are laid one after the other, each from side to side; then rows of studs.
 
-    Edge planks are left out: they are pushed in between the layers when the shell has its shape.
+    ``slides`` come after the runs, in their order. Edge planks are left out: they are pushed in between the layers when
+    the shell has its shape. Walked are ``carried_m`` metres from the ``stacks`` (by shell and family, mm on the floor)
+    and back, and ``path_m`` from stud to stud. ``tree_m`` is the minimum spanning tree of the studs, which no path
+    undercuts. People step over ``stepped_over`` members of the run that they lay; ``handlings`` of pieces over 3 m are
+    one each and another for each slide.
     """
 
     runs: tuple[tuple[str, ...], ...]
     rows: tuple[tuple[str, ...], ...]
+    slides: tuple[Slide, ...] = ()
+    stacks: Mapping[str, Point] = field(default_factory=dict)
+    carried_m: float = 0.0
+    path_m: float = 0.0
+    tree_m: float = 0.0
+    stepped_over: int = 0
+    handlings: int = 0
+
+    @property
+    def walked_m(self) -> float:
+        """All metres walked."""
+        return self.carried_m + self.path_m
+
+    @property
+    def least_m(self) -> float:
+        """Metres that no order undercuts: each stack is the best of its places, and no path is shorter than a tree."""
+        return self.carried_m + min(self.path_m, self.tree_m)
 
 
 def groups_of(items: Sequence[_T], most: int) -> tuple[tuple[_T, ...], ...]:
@@ -30,42 +85,6 @@ def groups_of(items: Sequence[_T], most: int) -> tuple[tuple[_T, ...], ...]:
     count = -(-len(items) // most)
     cuts = [round(i * len(items) / count) for i in range(count + 1)] if count else [0]
     return tuple(tuple(items[a:b]) for a, b in pairwise(cuts))
-
-
-def stud_rows(shell: Shell) -> tuple[tuple[str, ...], ...]:
-    """Return the studs in rows of like height, from the foot up, each row along the sweep.
-
-    A new row begins where the next higher stud stands more than the width of a stud above the last one.
-    """
-    direction = sweep_direction(shell)
-    rows: list[list[Stud]] = []
-    for stud in sorted(shell.studs, key=lambda stud: (stud.frame.origin[2], stud.mark)):
-        if rows and stud.frame.origin[2] - rows[-1][-1].frame.origin[2] <= stud.across_flats:
-            rows[-1].append(stud)
-        else:
-            rows.append([stud])
-    along = {stud.mark: float(np.array(stud.frame.origin) @ direction) for stud in shell.studs}
-    return tuple(tuple(sorted((stud.mark for stud in row), key=lambda mark: (along[mark], mark))) for row in rows)
-
-
-def flat_order(shell: Shell) -> FlatOrder:
-    """Return the order of laying a shell flat (paper section 3.2): by layer, and in each layer across the shell.
-
-    PlanError if the layers are woven so that no order exists.
-    """
-    direction = sweep_direction(shell)
-    layer: dict[str, int] = {}
-    along: dict[str, float] = {}
-    edge: set[str] = set()
-    for plank in shell.planks:
-        unit = lying_unit(plank)
-        layer[unit] = plank.layer
-        along.setdefault(unit, float(plank.curve.point_spline(plank.curve.length / 2.0) @ direction))
-        if plank.family == "E":
-            edge.add(unit)
-    precedence = layer_precedence(shell)
-    order = laying_order(precedence.subgraph(set(layer) - edge), {unit: (layer[unit], along[unit]) for unit in layer})
-    return FlatOrder(tuple(tuple(run) for _, run in groupby(order, key=lambda unit: layer[unit])), stud_rows(shell))
 
 
 def row_groups(rows: Sequence[tuple[str, ...]], most: int) -> tuple[tuple[tuple[str, ...], ...], ...]:
@@ -79,3 +98,221 @@ def row_groups(rows: Sequence[tuple[str, ...]], most: int) -> tuple[tuple[tuple[
         groups[int((before + len(piece) / 2.0) / total * count)].append(piece)
         before += len(piece)
     return tuple(tuple(group) for group in groups if group)
+
+
+def stud_rows(shell: Shell) -> tuple[tuple[str, ...], ...]:
+    """Return the studs in rows of like height, from the foot up, every other row along the sweep and back again.
+
+    A new row begins where the next higher stud stands more than the width of a stud above the last one; rows turn where
+    that makes the path along all of them shorter.
+    """
+    direction, axes = sweep_direction(shell), shell_view(shell).axes[:2]
+    rows: list[list[Stud]] = []
+    for stud in sorted(shell.studs, key=lambda stud: (stud.frame.origin[2], stud.mark)):
+        if rows and stud.frame.origin[2] - rows[-1][-1].frame.origin[2] <= stud.across_flats:
+            rows[-1].append(stud)
+        else:
+            rows.append([stud])
+    for row in rows:
+        row.sort(key=lambda stud: (float(np.array(stud.frame.origin) @ direction), stud.mark))
+    studs = [stud for row in rows for stud in row]
+    points = on_floor(np.array([stud.frame.origin for stud in studs]).reshape(-1, 3) @ axes.T)
+    numbers = iter(range(len(studs)))
+    numbered = [[next(numbers) for _ in row] for row in rows]
+    return tuple(tuple(studs[i].mark for i in row) for row in alternated(numbered, points))
+
+
+def walking_rows(places: Mapping[str, Point]) -> tuple[tuple[str, ...], ...]:
+    """Return places on the floor in the rows in which they are walked along: to and fro, or where shorter, freely.
+
+    The rows of a free path are its pieces in one row. A path less than 1 % shorter than whole rows is not worth it.
+    """
+    marks = sorted(places)
+    points = on_floor(np.array([places[mark] for mark in marks], dtype=np.float64).reshape(-1, 2))
+    rows = serpentine(points)
+    whole = [i for row in rows for i in row]
+    free = shorter_path(points, whole)
+    if path_length(points[list(free)]) < (1.0 - _WORTH_LEAVING_ROWS) * path_length(points[whole]):
+        row_of = {i: k for k, row in enumerate(rows) for i in row}
+        rows = tuple(tuple(piece) for _, piece in groupby(free, key=lambda i: row_of[i]))
+    return tuple(tuple(marks[i] for i in row) for row in rows)
+
+
+def _runs(
+    precedence: "nx.DiGraph[str]", sorts: Mapping[str, _Sort], slid: Collection[str]
+) -> tuple[tuple[tuple[str, ...], ...], tuple[str, ...]]:
+    """Return runs of units that wait for nothing but earlier runs, each of one sort, and the slid units in order.
+
+    Of the sorts with units that can be laid, the first is next, with all of them.
+    """
+    waiting = {unit: sum(before in sorts for before in precedence.predecessors(unit)) for unit in sorts}
+    free: dict[_Sort, list[str]] = defaultdict(list)
+    for unit in sorted(unit for unit in sorts if not waiting[unit]):
+        free[sorts[unit]].append(unit)
+    runs: list[tuple[str, ...]] = []
+    order: list[str] = []
+    while free:
+        # A slid unit is no reason to leave off laying.
+        sort = min(free, key=lambda sort: (all(unit in slid for unit in free[sort]), sort))
+        units = tuple(sorted(free.pop(sort)))
+        runs.append(tuple(unit for unit in units if unit not in slid))
+        order += (unit for unit in units if unit in slid)
+        for unit in units:
+            for after in precedence.successors(unit):
+                if after in sorts:
+                    waiting[after] -= 1
+                    if not waiting[after]:
+                        free[sorts[after]].append(after)
+    if left := sorted(unit for unit, count in waiting.items() if count):
+        raise PlanError(
+            f"{', '.join(left[:5])}: {len(left)} pieces lie on each other in a circle, allowed 0: none of them can be "
+            "laid first; give the interlacing, which says what is slid in and what is left out"
+        )
+    return tuple(run for run in runs if run), tuple(order)
+
+
+def _stacks(
+    lines: Mapping[str, Line], sorts: Mapping[str, _Sort], slides: Sequence[Slide], names: Mapping[_Sort, str]
+) -> tuple[dict[str, Point], float]:
+    """Return the best place of each stack, and the metres from all stacks to the lines and back."""
+    calls: dict[str, list[Point]] = defaultdict(list)
+    slid, pushed = {slide.unit: slide for slide in slides}, 0.0
+    for unit, line in sorted(lines.items()):
+        first = line.middle
+        if unit in slid:
+            first = line.before(slid[unit].end)
+            pushed += float(np.hypot(*np.subtract(first, line.middle)))
+        calls[names[sorts[unit]]] += [first, line.middle]
+    points = np.array([end for line in lines.values() for end in (line.start, line.end)]).reshape(-1, 2)
+    places = stack_places(points) if len(points) else points
+    stacks, carried = dict[str, Point](), pushed
+    for name, listed in sorted(calls.items()):
+        best, walked = best_stack(places, np.array(listed))
+        stacks[name] = (float(places[best, 0]), float(places[best, 1]))
+        carried += walked
+    return stacks, carried / MM_PER_M
+
+
+def _floor_order(
+    lines: Mapping[str, Line],
+    sorts: Mapping[str, _Sort],
+    precedence: "nx.DiGraph[str]",
+    slides: Sequence[Slide],
+    rows: tuple[tuple[str, ...], ...],
+    studs: Mapping[str, Point],
+) -> FlatOrder:
+    """Return the order on one floor."""
+    runs, slid = _runs(precedence, sorts, {slide.unit for slide in slides})
+    by_unit = {slide.unit: slide for slide in slides}
+    names = {sort: "-".join(part for part in (sort[0], sort[2]) if part) for sort in set(sorts.values())}
+    stacks, carried = _stacks(lines, sorts, slides, names)
+    laid, stepped = [], 0
+    for run in runs:
+        order = sweep_order({unit: lines[unit] for unit in run})
+        forward, backward = stepped_over([lines[unit] for unit in order], stacks[names[sorts[run[0]]]])
+        laid.append(order if forward <= backward else order[::-1])
+        stepped += min(forward, backward)
+    points = on_floor(np.array([studs[stud] for row in rows for stud in row]).reshape(-1, 2))
+    return FlatOrder(
+        runs=tuple(laid),
+        rows=rows,
+        slides=tuple(by_unit[unit] for unit in slid),
+        stacks=stacks,
+        carried_m=carried,
+        path_m=path_length(points) / MM_PER_M,
+        tree_m=spanning_tree_length(points) / MM_PER_M,
+        stepped_over=stepped,
+        handlings=sum((line.length > LONG_PIECE) * (1 + (unit in by_unit)) for unit, line in lines.items()),
+    )
+
+
+def flat_order(shell: Shell) -> FlatOrder:
+    """Return the order of laying a shell flat (paper section 3.2), its studs in whole rows from the foot up.
+
+    The floor is the shell seen square on. PlanError if the layers are woven so that no order exists.
+    """
+    axes = shell_view(shell).axes[:2]
+    ends: dict[str, list[Floats]] = defaultdict(list)
+    sorts: dict[str, _Sort] = {}
+    lengths: dict[str, float] = defaultdict(float)
+    for plank in (plank for plank in shell.planks if plank.family != EDGE_FAMILY):
+        unit, long = lying_unit(plank), plank.curve.length
+        ends[unit].append(plank.curve.point_spline(np.array([0.0, long])) @ axes.T)
+        sorts[unit] = (shell.mark, plank.layer, plank.family)
+        lengths[unit] = max(lengths[unit], long)
+    lines = {unit: _line(on_floor(np.mean(found, axis=0)), lengths[unit]) for unit, found in ends.items()}
+    studs = {stud.mark: _point(on_floor(np.array(stud.frame.origin) @ axes.T)) for stud in shell.studs}
+    return _floor_order(lines, sorts, layer_precedence(shell), (), stud_rows(shell), studs)
+
+
+def _graph_floor(
+    graph: "nx.MultiGraph[str]", members: Mapping[str, Sequence[str]], studs: Sequence[str]
+) -> tuple[dict[str, Line], dict[str, Point]]:
+    """Return the lines of units (of the planks ``members``) and the places of studs on the floor nearest to both."""
+    nodes: Mapping[str, Mapping[str, Any]] = graph.nodes
+    planks = [plank for listed in members.values() for plank in listed]
+    points = [nodes[plank][end] for plank in planks for end in ("start", "end")]
+    points += [nodes[mark]["position"] for mark in (*planks, *studs)]
+    axes = best_plane(np.array(points, dtype=np.float64).reshape(-1, 3))[:2]
+    lines = {}
+    for unit, listed in members.items():
+        ends = np.mean([[nodes[plank]["start"], nodes[plank]["end"]] for plank in listed], axis=0)
+        lines[unit] = _line(on_floor(ends @ axes.T), max(nodes[plank]["length_mm"] for plank in listed))
+    places = on_floor(np.array([nodes[stud]["position"] for stud in studs]).reshape(-1, 3) @ axes.T)
+    return lines, {stud: _point(place) for stud, place in zip(studs, places, strict=True)}
+
+
+def units_of(graph: "nx.MultiGraph[str]") -> dict[str, tuple[str, ...]]:
+    """Return the planks of each unit that is laid as one piece, a coupled beam or a plank, by its mark; sorted."""
+    nodes: Mapping[str, Mapping[str, Any]] = graph.nodes
+    found: dict[str, list[str]] = defaultdict(list)
+    for mark in sorted(mark for mark in graph if "start" in nodes[mark]):
+        found[nodes[mark]["beam"] or mark].append(mark)
+    return {unit: tuple(found[unit]) for unit in sorted(found)}
+
+
+def flat_order_of(
+    graph: "nx.MultiGraph[str]", interlacing: "Interlacing", later: Collection[str] | None = None
+) -> FlatOrder:
+    """Return the order of laying the shells of a graph (``assembly.graph``) flat, one after the other.
+
+    The floor of each shell is the plane nearest to it. ``later`` are units that are not laid: edge planks (family E)
+    if it is None; neither are those that the interlacing leaves out. PlanError if its precedence runs in a circle.
+    """
+    nodes: Mapping[str, Mapping[str, Any]] = graph.nodes
+    shells: dict[str, dict[str, tuple[str, ...]]] = defaultdict(dict)
+    sorts: dict[str, _Sort] = {}
+    for unit, planks in units_of(graph).items():
+        node = nodes[planks[0]]
+        gone = node["family"] == EDGE_FAMILY if later is None else unit in later
+        if not gone and unit not in interlacing.left_out:
+            shells[node["shell"]][unit] = planks
+            sorts[unit] = (node["shell"], node["layer"] or 0, node["family"])
+    studs: dict[str, list[str]] = defaultdict(list)
+    for mark in sorted(mark for mark in graph if nodes[mark]["kind"] == STUD_KIND):
+        studs[nodes[mark]["shell"]].append(mark)
+    orders = []
+    for shell in sorted({*shells, *studs}):
+        lines, places = _graph_floor(graph, shells[shell], studs[shell])
+        here = {unit: sorts[unit] for unit in lines}
+        slides = [slide for slide in interlacing.slides if slide.unit in lines]
+        orders.append(_floor_order(lines, here, interlacing.precedence, slides, walking_rows(places), places))
+    return FlatOrder(
+        runs=tuple(run for order in orders for run in order.runs),
+        rows=tuple(row for order in orders for row in order.rows),
+        slides=tuple(slide for order in orders for slide in order.slides),
+        stacks={name: place for order in orders for name, place in order.stacks.items()},
+        carried_m=sum(order.carried_m for order in orders),
+        path_m=sum(order.path_m for order in orders),
+        tree_m=sum(order.tree_m for order in orders),
+        stepped_over=sum(order.stepped_over for order in orders),
+        handlings=sum(order.handlings for order in orders),
+    )
+
+
+def _point(found: Floats) -> Point:
+    return float(found[0]), float(found[1])
+
+
+def _line(ends: Floats, length: float) -> Line:
+    return Line(_point(ends[0]), _point(ends[1]), length)

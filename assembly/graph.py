@@ -1,8 +1,9 @@
 """The gridshell as a graph: every part a node, every joint the edges between the parts that meet in it."""
 
-from collections.abc import Iterator
-from itertools import combinations
-from typing import TypedDict
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from itertools import combinations, pairwise, product
+from typing import Literal, NotRequired, TypeAlias, TypedDict, get_args
 
 import networkx as nx
 import numpy as np
@@ -11,6 +12,7 @@ from aag_cad.parts.assemblies import beam_of_parts
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import (
+    UNMOVED,
     ClampingBar,
     Frame,
     Gridshell,
@@ -18,21 +20,36 @@ from aag_cad.parts.model import (
     Mullion,
     Part,
     Plank,
+    Shell,
     Strap,
     Strip,
-    all_joints,
     all_parts,
+    ridge_parts,
     shell_parts,
 )
 from aag_cad.parts.products import part_frame
 from aag_cad.parts.quantities import kind, mass, sizes
 from aag_cad.units import Floats, Vector, vector
+from assembly.layers import SAME_HEIGHT, crossing_levels, lying_unit
+
+EdgeKind: TypeAlias = Literal["crossing", "coupled", "bolted", "screwed", "seated", "bladed"]
+EDGE_KINDS: tuple[EdgeKind, ...] = get_args(EdgeKind)
+
+_BY_FASTENER: dict[str, EdgeKind] = {"B": "bolted", "W": "screwed", "T": "seated"}
+_BY_JOINT: dict[str, EdgeKind] = {
+    "AA": "bolted", "AG": "screwed", "boundary": "screwed", "foot": "bolted", "footing": "seated", "ridge": "bolted",
+    "blade": "bladed", "cover": "screwed",
+}  # fmt: skip
 
 
 class PartNode(TypedDict):
     """What a node of the graph carries; ``position`` is in vault coordinates, mm; ``layer`` is None between layers.
 
-    ``kind`` is the word of the part lists (``aag_cad.parts.quantities.kind``).
+    ``kind`` is the word of the part lists (``aag_cad.parts.quantities.kind``), ``beam`` the mark of the coupled beam
+    that the part is put together with, or "". What is laid on the floor, a plank, has in addition: ``start`` and
+    ``end`` of its centre line (vault coordinates, mm); whether it stands ``upright`` on the surface; ``depth_mm``, its
+    size along the surface normal; ``min_radius_mm``, to which it can be bent flat-ways; and, only in graphs from
+    elsewhere, ``slides``: whether it may be slid in, which else all do that do not stand upright.
     """
 
     kind: str
@@ -43,6 +60,29 @@ class PartNode(TypedDict):
     mass_kg: float
     length_mm: float
     position: Vector
+    start: NotRequired[Vector]
+    end: NotRequired[Vector]
+    upright: NotRequired[bool]
+    depth_mm: NotRequired[float]
+    min_radius_mm: NotRequired[float]
+    slides: NotRequired[bool]
+
+
+class JointEdge(TypedDict):
+    """What an edge carries: how its two parts are joined, and the mark and kind of the joint.
+
+    ``crossing``: one plank lies over another, ``above`` is the mark of the upper one ("" where they meet end to end),
+    ``below_mm`` and ``above_mm`` the stations of the joint along the lower and the upper one (end to end: along the
+    first and the second mark). ``coupled``: plank of a beam and block in its gap. ``bolted``, ``screwed``: by or to
+    the hub of the joint. ``seated``: shoe and rod on their concrete block. ``bladed``: ridge plank and blade.
+    """
+
+    kind: EdgeKind
+    joint: str
+    joint_kind: str
+    above: NotRequired[str]
+    below_mm: NotRequired[float]
+    above_mm: NotRequired[float]
 
 
 def part_point(part: Part) -> Floats:
@@ -67,61 +107,118 @@ def joint_of(mark: str) -> str:
     return mark.rpartition("-")[0]
 
 
-def joint_edges(joint: Joint) -> Iterator[tuple[str, str]]:
-    """Yield the pairs of parts that a joint ties together.
+def _hub(joint: Joint) -> str:
+    """Return the member that the others are tied to: the one with the joint's mark, else its coupling block, or ""."""
+    if joint.mark in joint.members:
+        return joint.mark
+    return next((mark for mark in joint.members if parse_mark(mark).family == "K"), "")
 
-    A stud, coupling block, strap, shoe, concrete block or blade is the hub that the others are tied to: the member that
-    bears the joint's mark, or else its coupling block. Without one, all members are tied pairwise and the fasteners to
-    the first of them.
+
+def _ties(joint: Joint, beams: Mapping[str, str]) -> Iterator[tuple[str, str, EdgeKind]]:
+    """Yield the pairs of parts that a joint ties together, and how.
+
+    ``beams`` gives the coupled beam of every plank, or "". A stud, coupling block, strap, shoe, concrete block or blade
+    is the hub that the others are tied to. Without one all members are tied pairwise, but for planks, whose crossings
+    are edges of their own, and the fasteners to the first member.
     """
-    hubs = [mark for mark in joint.members if mark == joint.mark]
-    hubs = hubs or [mark for mark in joint.members if parse_mark(mark).family == "K"]
-    if not hubs:
-        yield from combinations(joint.members, 2)
-        hubs = list(joint.members[:1])
-    else:
-        yield from ((hubs[0], mark) for mark in joint.members if mark != hubs[0])
-    yield from ((hubs[0], fastener) for fastener in joint.fasteners)
+    usual, hub = _BY_JOINT[joint.kind], _hub(joint)
+    for mark in joint.members:
+        if hub and mark != hub:
+            on_block = joint.kind in ("AG", "boundary") and beams.get(mark)
+            yield hub, mark, "coupled" if on_block else usual
+    if not hub:
+        for a, b in combinations(joint.members, 2):
+            if a not in beams or b not in beams:
+                yield a, b, usual
+    for fastener in joint.fasteners:
+        yield hub or joint.members[0], fastener, _BY_FASTENER[parse_mark(fastener).part[0]]
 
 
-def _placed_point(part: Part, placement: Frame | None) -> Vector:
-    point = part_point(part)
-    if placement is None:
-        return vector(point)
+def _crossings(shell: Shell) -> Iterator[tuple[str, str, JointEdge]]:
+    """Yield the planks that lie on one another, each pair of neighbours in height once, and those that meet."""
+    planks = {plank.mark: plank for plank in shell.planks}
+    stations = {(p.mark, place.joint): place.station for p in shell.planks for place in p.joints}
+    levels = crossing_levels(shell)
+    for joint in shell.joints:
+        units: dict[str, list[tuple[float, str]]] = defaultdict(list)
+        for level in levels[joint.mark]:
+            if level.mark in planks:
+                units[lying_unit(planks[level.mark])].append((level.height, level.mark))
+        stack = sorted((sum(h for h, _ in listed) / len(listed), unit) for unit, listed in units.items())
+        for (low, lower), (high, upper) in pairwise(stack):
+            for (_, a), (_, b) in product(units[lower], units[upper]):
+                first, second = (a, b) if high - low > SAME_HEIGHT or a < b else (b, a)
+                yield first, second, JointEdge(
+                    kind="crossing",
+                    joint=joint.mark,
+                    joint_kind=joint.kind,
+                    above=second if high - low > SAME_HEIGHT else "",
+                    below_mm=stations[first, joint.mark],
+                    above_mm=stations[second, joint.mark],
+                )
+
+
+def _placed(points: Floats, placement: Frame) -> list[Vector]:
     matrix = frame_matrix(placement)
-    return vector(matrix[:3, :3] @ point + matrix[:3, 3])
+    return [vector(point) for point in points @ matrix[:3, :3].T + matrix[:3, 3]]
 
 
-def assembly_graph(gridshell: Gridshell) -> "nx.MultiGraph[str]":
-    """Return the graph of all parts (nodes by mark, see ``PartNode``) and joints (edges keyed by joint mark).
+def _add_planks(graph: "nx.MultiGraph[str]", shell: Shell, min_radius: float) -> None:
+    """Give the planks of a shell what the laying needs to know of them, and add their crossings."""
+    starts = _placed(np.array([plank.curve.points[0] for plank in shell.planks]).reshape(-1, 3), shell.placement)
+    ends = _placed(np.array([plank.curve.points[-1] for plank in shell.planks]).reshape(-1, 3), shell.placement)
+    for plank, start, end in zip(shell.planks, starts, ends, strict=True):
+        section = plank.blank.section
+        depth = section.width if plank.upright else section.thickness
+        graph.add_node(
+            plank.mark, start=start, end=end, upright=plank.upright, depth_mm=depth, min_radius_mm=min_radius
+        )
+    for a, b, edge in _crossings(shell):
+        graph.add_edge(a, b, key=edge["joint"], **edge)
 
-    An edge carries the ``kind`` of its joint. Masses in kg, lengths and positions in mm, any number of shells.
-    """
-    graph: nx.MultiGraph[str] = nx.MultiGraph(name=gridshell.name)
-    placements: dict[str, Frame | None] = {}
-    beams: dict[str, str] = {}
+
+def _add_ties(graph: "nx.MultiGraph[str]", joints: tuple[Joint, ...], beams: Mapping[str, str]) -> None:
+    for joint in joints:
+        for a, b, how in _ties(joint, beams):
+            graph.add_edge(a, b, key=joint.mark, **JointEdge(kind=how, joint=joint.mark, joint_kind=joint.kind))
+
+
+def _add_parts(graph: "nx.MultiGraph[str]", gridshell: Gridshell, parts: tuple[Part, ...], shell: Shell | None) -> None:
+    homes = beam_of_parts(shell) if shell else {}
     layers: dict[str, int] = {}
-    for shell in gridshell.shells:
-        placements |= {part.mark: shell.placement for part in shell_parts(shell)}
-        home, of_beam = beam_of_parts(shell), {beam.mark: beam.layer for beam in shell.beams}
-        beams |= home
+    if shell:
+        of_beam = {beam.mark: beam.layer for beam in shell.beams}
         layers |= {plank.mark: plank.layer for plank in shell.planks}
-        layers |= {block.mark: of_beam[home[block.mark]] for block in shell.blocks if block.mark in home}
-    for part in all_parts(gridshell):
+        layers |= {block.mark: of_beam[homes[block.mark]] for block in shell.blocks if block.mark in homes}
+    points = np.array([part_point(part) for part in parts]).reshape(-1, 3)
+    for part, position in zip(parts, _placed(points, shell.placement if shell else UNMOVED), strict=True):
         graph.add_node(
             part.mark,
             **PartNode(
                 kind=kind(part),
                 family=parse_mark(part.mark).family,
                 shell=shell_of(part.mark),
-                beam=beams.get(part.mark, ""),
+                beam=homes.get(part.mark, ""),
                 layer=layers.get(part.mark),
                 mass_kg=mass(part, gridshell.timber),
                 length_mm=sizes(part)[0],
-                position=_placed_point(part, placements.get(part.mark)),
+                position=position,
             ),
         )
-    for joint in all_joints(gridshell):
-        for a, b in joint_edges(joint):
-            graph.add_edge(a, b, key=joint.mark, kind=joint.kind)
+
+
+def assembly_graph(gridshell: Gridshell) -> "nx.MultiGraph[str]":
+    """Return the graph of all parts (nodes by mark, ``PartNode``) and joints (edges by joint mark, ``JointEdge``).
+
+    Masses in kg, lengths, stations and positions in mm, any number of shells.
+    """
+    graph: nx.MultiGraph[str] = nx.MultiGraph(name=gridshell.name)
+    for shell in gridshell.shells:
+        _add_parts(graph, gridshell, shell_parts(shell), shell)
+    _add_parts(graph, gridshell, ridge_parts(gridshell), None)
+    for shell in gridshell.shells:
+        _add_planks(graph, shell, gridshell.timber.min_bending_radius)
+        _add_ties(graph, shell.joints, {plank.mark: plank.beam for plank in shell.planks})
+    _add_ties(graph, gridshell.joints, {})
+    assert len(graph) == len(all_parts(gridshell))
     return graph

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from assembly.drawing import (
     placed_labels,
     places_along,
     places_round,
+    rectangle,
     svg,
 )
 from assembly.outline import Outline
@@ -45,6 +47,7 @@ DONE = Style("#777")
 LABEL_SIZE = 27.0
 DOT_LABEL_SIZE = 23.0
 _DOT = 10.0
+_PROP = 12.0
 _ON_THE_GROUND = ("C", "F")
 
 _SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88)
@@ -55,9 +58,10 @@ class Scene:
     """What a picture shows of a shell, by mark.
 
     ``there`` and ``new`` are planks and other pieces, ``worked_on`` planks; ``dots`` joints with a solid dot, ``rings``
-    joints with a ring, ``done`` joints with a small grey dot. ``names`` are framed labels of planks, beams or pieces
-    along their lines, ``tags`` framed and ``numbers`` plain labels at joints; ``starts`` are planks or beams whose
-    start ends get a triangle.
+    joints with a ring, ``done`` joints with a small grey dot, ``props`` joints on a prop. ``names`` are framed labels of
+    planks, beams or pieces along their lines, ``tags`` framed and ``numbers`` plain labels at joints; ``starts`` are
+    planks or beams whose start ends get a triangle. ``slides`` are planks or beams that are slid in along their line,
+    each with the end that lies outside longest.
     """
 
     there: Collection[str] = ()
@@ -70,6 +74,8 @@ class Scene:
     numbers: Mapping[str, str] = field(default_factory=dict)
     tags: Mapping[str, str] = field(default_factory=dict)
     starts: Sequence[str] = ()
+    props: Sequence[str] = ()
+    slides: Mapping[str, Literal["start", "end"]] = field(default_factory=dict)
 
 
 def _triangle(start: Floats, towards: Floats, size: float) -> Floats:
@@ -80,12 +86,34 @@ def _triangle(start: Floats, towards: Floats, size: float) -> Floats:
     return np.array([tip, base + 0.5 * size * across, base - 0.5 * size * across])
 
 
+def _arrow(points: Floats, outside: Literal["start", "end"]) -> str:
+    """Return an arrow beside the middle of a line (n, 2), from the end that lies outside longest."""
+    ends = places_along(points, (0.06, 0.3) if outside == "start" else (0.94, 0.7))
+    along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    across = np.array([-along[1], along[0]])
+    tail, tip = ends + 34.0 * across
+    neck = tip - 46.0 * along
+    shaft = np.array([tail + 7.0 * across, neck + 7.0 * across, neck - 7.0 * across, tail - 7.0 * across])
+    head = np.array([tip, neck + 24.0 * across, neck - 24.0 * across])
+    return group([path(np.array([*shaft[:2], head[1], head[0], head[2], *shaft[2:]]))], Style("#000", "#fff", 3.0))
+
+
+def prop_items(points: Iterable[Floats]) -> str:
+    """Return squares with a cross over places (2,): props."""
+    crossed = []
+    for x, y in (point.tolist() for point in points):
+        a, b, c, d = x - _PROP, y - _PROP, x + _PROP, y + _PROP
+        crossed.append(rectangle(a, b, 2.0 * _PROP, 2.0 * _PROP))
+        crossed += [path(np.array(diagonal), closed=False) for diagonal in (((a, b), (c, d)), ((a, d), (c, b)))]
+    return group(crossed, Style("#fff", "#000", 3.0))
+
+
 def _labels(outline: Outline, scene: Scene) -> str:
     """Return the labels of planks (framed) and joints (plain), clear of the dots and of each other."""
     sheet: Box = (0.0, 0.0, outline.width, outline.height)
     new = ((mark, piece) for mark, piece in outline.pieces.items() if mark in scene.new)
     fittings = [piece for mark, piece in new if parse_mark(mark).family[0] == "R"]
-    dots = (outline.points[mark].tolist() for mark in (*scene.dots, *scene.rings))
+    dots = (outline.points[mark].tolist() for mark in (*scene.dots, *scene.rings, *scene.props))
     taken: list[Box] = [(x - _DOT, y - _DOT, x + _DOT, y + _DOT) for x, y in dots]
     taken += [(*piece.min(axis=0).tolist(), *piece.max(axis=0).tolist()) for piece in fittings]
     points, size = outline.points, DOT_LABEL_SIZE
@@ -125,6 +153,8 @@ def scene_items(outline: Outline, scene: Scene) -> Iterable[str]:
     yield group((circle(outline.points[mark], 0.6 * _DOT) for mark in scene.done), DONE)
     yield group((circle(outline.points[mark], 0.8 * _DOT) for mark in scene.rings), RING)
     yield group((circle(outline.points[mark], _DOT) for mark in scene.dots), DOT)
+    yield prop_items(outline.points[mark] for mark in scene.props)
+    yield from (_arrow(outline.lines[mark], outside) for mark, outside in scene.slides.items())
     yield _labels(outline, scene)
 
 

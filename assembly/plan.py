@@ -2,22 +2,26 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, fields
-from typing import Any, get_type_hints
+from dataclasses import asdict
 
-from aag_cad.parts.model import Gridshell, JointKind, all_parts
+from aag_cad.errors import FileError
+from aag_cad.parts.model import Gridshell, JointKind, Shell, all_parts
 from aag_cad.parts.quantities import mass, sizes
+from aag_cad.parts.store import value_of
 from assembly.crew import Crew, crew_of, hands_for
 from assembly.errors import PlanError
 from assembly.kit import shell_kit
+from assembly.language import Language, say
+from assembly.locking import LockingOrder
 from assembly.process import Work, shell_works
-from assembly.site import site_works
-from assembly.steps import PHASES, Phase, Plan, Step
+from assembly.segments import Segmentation
+from assembly.site import divide_works, site_works
+from assembly.steps import Phase, Plan, Step
 from assembly.wording import Fastener, fasteners_by_kind, wording
 
 __all__ = ["Plan", "Step", "plan_json", "plan_of", "read_plan"]
 
-PLAN_VERSION = 1
+PLAN_VERSION = 2
 _EACH_HELD = ("hoist", "stand")
 
 
@@ -56,11 +60,13 @@ def _step(
     fasteners: Mapping[JointKind, Sequence[Fastener]],
     crew: Crew,
     weights: Mapping[str, tuple[float, float]],
+    language: Language,
 ) -> Step:
     """Return the step of a piece of work: with its words, and with the hands for its heaviest and longest piece."""
-    words = wording(work.phase, fasteners, work.below)
+    words = wording(work.phase, fasteners, work.below, language)
     pieces = [weights[mark] for mark in lifted(work.phase, work.marks, work.assemblies)]
     hands = hands_for(crew, max((m for m, _ in pieces), default=0.0), max((n for _, n in pieces), default=0.0))
+    geared = hands.gear and work.least_crew <= crew.people
     return Step(
         number=number,
         id=work.id,
@@ -69,50 +75,50 @@ def _step(
         shell=shell,
         marks=work.marks,
         assemblies=work.assemblies,
-        tools=(*words.tools, "lifting gear") if hands.gear and work.least_crew <= crew.people else words.tools,
+        tools=(*words.tools, say(language, "steps.gear")) if geared else words.tools,
         crew=max(hands.people, min(work.least_crew, crew.people)),
         predecessors=work.after,
-        instructions=words.instructions,
+        instructions=(*words.instructions, *work.notes),
         hold=words.hold if last else "",
+        props=work.props,
+        extras=work.extras,
     )
 
 
-def plan_of(gridshell: Gridshell, people: int, lift_limit: float) -> Plan:
+def plan_of(
+    gridshell: Gridshell,
+    people: int,
+    lift_limit: float,
+    *,
+    locking: Sequence[LockingOrder] = (),
+    segmentation: Segmentation | None = None,
+    language: Language = "en",
+) -> Plan:
     """Return the assembly plan for a crew of ``people`` who lift at most ``lift_limit`` kg each (paper section 3.2).
 
-    PlanError if the layers are woven in a circle, a part belongs to no joint, or the crew is empty.
+    The geodesics are fixed in the order of ``locking``, one for each shell; without it by their marks. Shells that
+    ``segmentation`` cuts are parted for the journey and joined again on site. PlanError if the layers are woven so that
+    no plank can be slid in, a part belongs to no joint, or the crew is empty.
     """
     crew, weights = crew_of(people, lift_limit), piece_weights(gridshell)
-    chapters = [(shell.mark, (shell,), shell_works(shell)) for shell in gridshell.shells]
+    orders = {order.shell: order for order in locking}
+    chapters: list[tuple[str, Sequence[Shell], tuple[Work, ...]]] = []
+    for shell in gridshell.shells:
+        works = shell_works(shell, orders.get(shell.mark), language)
+        chapters.append((shell.mark, (shell,), (*works, *divide_works(shell, segmentation, language))))
+    chapters.append(("", gridshell.shells, site_works(gridshell, segmentation, language, locking)))
     steps: list[Step] = []
-    for name, shells, works in [*chapters, ("", gridshell.shells, site_works(gridshell))]:
+    for name, shells, works in chapters:
         fasteners = fasteners_by_kind(gridshell, shells)
         for i, work in enumerate(works):
             last = work.phase in _EACH_HELD or all(later.phase != work.phase for later in works[i + 1 :])
-            steps.append(_step(work, len(steps) + 1, last, name, fasteners, crew, weights))
-    return Plan(gridshell.name, tuple(steps))
+            steps.append(_step(work, len(steps) + 1, last, name, fasteners, crew, weights, language))
+    return Plan(gridshell.name, tuple(steps), language)
 
 
 def plan_json(plan: Plan) -> str:
     """Return a plan as JSON text that ``read_plan`` reads back to an equal plan."""
     return json.dumps({"schema_version": PLAN_VERSION, **asdict(plan)}, indent=1, ensure_ascii=False) + "\n"
-
-
-def _read_step(data: object, place: int) -> Step:
-    """Return a step from parsed JSON; PlanError that names the step and the key."""
-    if not isinstance(data, dict) or set(data) != {field.name for field in fields(Step)}:
-        raise PlanError(f"steps[{place}]: keys must be {', '.join(field.name for field in fields(Step))}")
-    values: dict[str, Any] = {}
-    for name, kind in get_type_hints(Step).items():
-        value = data[name]
-        listed = name in ("marks", "assemblies", "tools", "predecessors", "instructions")
-        if listed and isinstance(value, list) and all(isinstance(item, str) for item in value):
-            values[name] = tuple(value)
-        elif not listed and type(value) is (int if kind is int else str) and (name != "phase" or value in PHASES):
-            values[name] = value
-        else:
-            raise PlanError(f"steps[{place}].{name}: {value!r} is not allowed; write plans with plan_json")
-    return Step(**values)
 
 
 def read_plan(text: str) -> Plan:
@@ -121,8 +127,10 @@ def read_plan(text: str) -> Plan:
         data = json.loads(text)
     except json.JSONDecodeError as error:
         raise PlanError(f"assembly plan: not valid JSON: {error}") from error
-    if not isinstance(data, dict) or data.get("schema_version") != PLAN_VERSION:
+    if not isinstance(data, dict) or data.pop("schema_version", None) != PLAN_VERSION:
         raise PlanError(f"assembly plan: schema_version must be {PLAN_VERSION}; write it again with this version")
-    if not isinstance(data.get("name"), str) or not isinstance(data.get("steps"), list):
-        raise PlanError("assembly plan: it needs a name and a list of steps; write it with plan_json")
-    return Plan(data["name"], tuple(_read_step(step, i) for i, step in enumerate(data["steps"])))
+    try:
+        plan: Plan = value_of(Plan, data, "plan")
+    except FileError as error:
+        raise PlanError(f"assembly {error}; write plans with plan_json") from error
+    return plan

@@ -5,15 +5,19 @@ from collections.abc import Iterable, Sequence
 
 from aag_cad.parts.marks import Mark, parse_mark
 
+_PAIR = 2
 
-def _runs(numbers: Iterable[int]) -> list[tuple[int, int]]:
-    runs: list[tuple[int, int]] = []
+
+def _runs(numbers: Iterable[int]) -> list[tuple[int, ...]]:
+    """Return numbers singly, and first and last of three neighbours or more."""
+    runs: list[list[int]] = []
     for number in sorted(numbers):
-        if runs and number == runs[-1][1] + 1:
-            runs[-1] = (runs[-1][0], number)
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
         else:
-            runs.append((number, number))
-    return runs
+            runs.append([number])
+    pieces = ([(run[0], run[-1])] if len(run) > _PAIR else [(number,) for number in run] for run in runs)
+    return [piece for listed in pieces for piece in listed]
 
 
 def short_mark(mark: str) -> str:
@@ -23,7 +27,7 @@ def short_mark(mark: str) -> str:
 
 
 def mark_ranges(marks: Sequence[str]) -> tuple[str, ...]:
-    """Return marks without their shell, neighbours as ranges: ``A1-01 to A1-04 L+R``, ``K-012``; sorted by family.
+    """Return marks without their shell, three neighbours or more as a range: ``A1-01 … A1-04 L+R``, ``K-012``; sorted by family.
 
     Marks of several shells keep theirs.
     """
@@ -37,9 +41,9 @@ def mark_ranges(marks: Sequence[str]) -> tuple[str, ...]:
         groups[shell, family, "+".join(part for part in parts if part)].append(index)
     texts = []
     for (shell, family, part), numbers in groups.items():
-        for first, last in _runs(numbers):
-            ends = [str(Mark(shell, family, number)) for number in ((first,) if first == last else (first, last))]
-            text = " to ".join(short_mark(end) if alone else end for end in ends)
+        for run in _runs(numbers):
+            ends = [str(Mark(shell, family, number)) for number in run]
+            text = " … ".join(short_mark(end) if alone else end for end in ends)
             texts.append(f"{text} {part}" if part else text)
     return tuple(texts)
 

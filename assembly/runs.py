@@ -270,6 +270,13 @@ def _carried_splices(item: Divisible, start: int, end: int) -> list[Splice]:
     return [splice for stop in keeps for splice in run_splices(item, stop) if splice.kind == "block"]
 
 
+def _splice_screws(item: Divisible, blocks: list[Splice]) -> Iterator[str]:
+    """Yield the screws by which splice blocks hang on the geodesic that they travel with."""
+    at = {splice.joint for splice in blocks}
+    for joint in (joint for joint in item.shell.joints if joint.mark in at):
+        yield from (mark for mark in joint.fasteners if isinstance(item.small.get(mark), Screw))
+
+
 def run_between(item: Divisible, start: int, end: int) -> Run:
     """Return what lies between two stops of a shell; shoes, rods, cover and what the splices replace stay out.
 
@@ -277,8 +284,8 @@ def run_between(item: Divisible, start: int, end: int) -> Run:
     """
     spans = _spans(item, start, end)
     left_out = frozenset(s.joint for stop in cut_stops(item.tracks, start, end) for s in run_splices(item, stop))
-    small = tuple(dict.fromkeys(_joint_parts(item, spans)))
     blocks = _carried_splices(item, start, end)
+    small = tuple(dict.fromkeys((*_joint_parts(item, spans), *_splice_screws(item, blocks))))
     masses, centres, corners, whole, pieces = [], [], [], [], []
     for mark, held in spans.items():
         stations, rings = item.rings[mark]

@@ -78,7 +78,7 @@ def splice_rows(plan: Segmentation) -> list[Row]:
             str(splice.bolts),
             f"{splice.diameter:g}",
             " ".join(splice.left_out),
-            "no" if splice.problem else "yes",
+            "yes" if splice.fits else "no",
         )
         for splice in plan.splices
         for cut in splice.cuts

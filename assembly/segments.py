@@ -5,19 +5,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from aag_cad.findings import Finding
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Frame, Gridshell, Shell
 from aag_cad.parts.products import product_key
 from aag_cad.parts.quantities import material
 from aag_cad.units import Floats, Vector, vector
 from assembly.boxes import Pose
-from assembly.lifting import LEAST_MARGIN, Brace, Lifting, braces, lifting_points
+from assembly.language import Language
+from assembly.lifting import Brace, Lifting, braces, lifting_points
 from assembly.runs import Divisible, PlankPiece, Run, cut_stops, divisible, run_between, run_splices
-from assembly.segment_search import Limits, best_stops, least_widths, pose_in, segment_ends, smallest_runs
+from assembly.segment_findings import cut_finding, hopeless_finding, lifting_finding, splice_finding, wish
+from assembly.segment_search import Limits, best_stops, pose_in, segment_ends
 from assembly.splices import Splice
 
 _ROUNDING = 1e-9
-_UP_TO = 10.0
 
 
 @dataclass(frozen=True)
@@ -59,24 +61,16 @@ class Segment:
 class Segmentation:
     """How a gridshell is divided: segments, splices, and the fasteners put in on site because they join segments.
 
-    ``changes`` say what a shell that is cut would need to travel whole, ``problems`` what must change because it cannot
-    be cut, slung or spliced so.
+    ``changes`` say what a shell that is cut would need to travel whole (warnings), ``problems`` what must change because
+    it cannot be cut, slung or spliced so (errors).
     """
 
     limits: Limits
     segments: tuple[Segment, ...]
     splices: tuple[Splice, ...]
     site: tuple[str, ...]
-    changes: tuple[str, ...]
-    problems: tuple[str, ...]
-
-
-def _numbers(limits: Limits) -> str:
-    return f"{limits.length:g} x {limits.width:g} x {limits.height:g} mm and {limits.load:g} kg"
-
-
-def _box(pose: Pose) -> str:
-    return " x ".join(f"{size:.0f}" for size in pose.size) + " mm"
+    changes: tuple[Finding, ...]
+    problems: tuple[Finding, ...]
 
 
 def _vault_pose(pose: Pose, placement: Frame) -> Pose:
@@ -140,68 +134,6 @@ def _segment(item: Divisible, name: str, start: int, end: int, limits: Limits) -
     )
 
 
-def _whole_run(item: Divisible) -> Run:
-    return run_between(item, *segment_ends(item, ())[0])
-
-
-def _up(size: float) -> float:
-    return _UP_TO * math.ceil(size / _UP_TO)
-
-
-def _wish(item: Divisible, limits: Limits) -> str:
-    """Return what would let a shell travel whole."""
-    run = _whole_run(item)
-    load = f"a load of {math.ceil(run.mass)} kg"
-    if pose_in(run, limits, 1.0).filling <= 1.0 + _ROUNDING:
-        return load
-    words = [
-        f"transport.{key} = {_up(size):.0f}"
-        for key, size in zip(("width", "height"), least_widths(run, limits), strict=True)
-        if size is not None
-    ]
-    if not words:
-        pose = pose_in(run, limits)
-        words = [f"a transport of {' x '.join(f'{_up(size):.0f}' for size in pose.size)} mm"]
-    wish = " or ".join(words)
-    return f"{wish} and {load}" if run.mass > limits.load else wish
-
-
-def _cut_words(item: Divisible, stops: tuple[int, ...], limits: Limits, wish: str) -> str:
-    """Return which cuts a shell needs, and what would spare them."""
-    beams = sum(splice.kind == "block" for stop in stops for splice in run_splices(item, stop))
-    along = ", ".join(item.tracks.lines[item.tracks.line(stop) - 1] for stop in stops)
-    return (
-        f"{item.shell.mark}: does not fit {_numbers(limits)} whole; it is cut into "
-        f"{len(segment_ends(item, stops))} along {along}, {beams} beams spliced; it travels whole with {wish}"
-    )
-
-
-def _hopeless(item: Divisible, limits: Limits, wish: str) -> str:
-    """Return why no cuts along geodesics will do, by the best of all runs of a single geodesic that do not fit."""
-    best_of: dict[str, tuple[float, str]] = {}
-    for ends in smallest_runs(item):
-        run = run_between(item, *ends)
-        pose = pose_in(run, limits, 1.0)
-        words = f"{run.geodesics[0]} alone with the beams beside it takes {_box(pose)} and {run.mass:.0f} kg"
-        filling = max(pose.filling, run.mass / limits.load)
-        best_of[run.geodesics[0]] = min(best_of.get(run.geodesics[0], (math.inf, "")), (filling, words))
-    worst = max(best_of.values())
-    return (
-        f"{item.shell.mark}: no cuts along its geodesics make it fit {_numbers(limits)}: {worst[1]}; it travels "
-        f"whole with {wish}, or as single beams and planks"
-    )
-
-
-def _segment_problems(segment: Segment) -> list[str]:
-    found = []
-    if not segment.lifting.studs:
-        found.append(
-            f"{segment.name}: no three studs stand {LEAST_MARGIN:.0f} mm or more around its centre of gravity; "
-            "sling it by its beams under a spreader"
-        )
-    return found
-
-
 def _shape_key(shell: Shell) -> tuple[str, ...]:
     """Return what shells that are cut alike have in common: equal planks at equal joints."""
     return (*(product_key(plank) for plank in shell.planks), *(f"{joint.kind}{joint.point}" for joint in shell.joints))
@@ -216,7 +148,7 @@ def _on_site(item: Divisible, segments: list[Segment], splices: list[Splice]) ->
     return [mark for mark in item.small if mark not in gone]
 
 
-def segments(gridshell: Gridshell, limits: Limits) -> Segmentation:
+def segments(gridshell: Gridshell, limits: Limits, language: Language = "en") -> Segmentation:
     """Return the fewest segments that fit the transport, with fewest cut beams, then most even masses.
 
     Shells are divided along the ridges already; each is cut further along its geodesics if it must be. The choice of
@@ -226,15 +158,15 @@ def segments(gridshell: Gridshell, limits: Limits) -> Segmentation:
     made: list[Segment] = []
     splices: list[Splice] = []
     site: list[str] = []
-    changes: list[str] = []
-    problems: list[str] = []
+    changes: list[Finding] = []
+    problems: list[Finding] = []
     known: dict[tuple[str, ...], tuple[tuple[int, ...] | None, str]] = {}
     for shell in gridshell.shells:
         item, key = divisible(shell, gridshell.timber), _shape_key(shell)
         if key not in known:
             stops = best_stops(item, limits)
-            known[key] = stops, "" if stops == () else _wish(item, limits)
-        stops, wish = known[key]
+            known[key] = stops, "" if stops == () else wish(item, limits, language)
+        stops, wished = known[key]
         ends = segment_ends(item, stops or ())
         names = [shell.mark] if len(ends) == 1 else [f"{shell.mark}.{i}" for i in range(1, len(ends) + 1)]
         own = [_segment(item, name, *pair, limits) for name, pair in zip(names, ends, strict=True)]
@@ -243,9 +175,17 @@ def segments(gridshell: Gridshell, limits: Limits) -> Segmentation:
         splices += cut
         site += _on_site(item, own, cut)
         if stops is None:
-            problems.append(_hopeless(item, limits, wish))
+            problems.append(hopeless_finding(item, limits, wished, language))
         elif stops:
-            changes.append(_cut_words(item, stops, limits, wish))
-        problems += [splice.problem for splice in cut if splice.problem]
-        problems += [problem for segment in own for problem in _segment_problems(segment)]
+            changes.append(cut_finding(item, stops, limits, wished, language))
+        found = (
+            *(splice_finding(s, language) for s in cut),
+            *(lifting_finding(s.name, s.lifting, language) for s in own),
+        )
+        problems += [finding for finding in found if finding is not None]
     return Segmentation(limits, tuple(made), tuple(splices), tuple(site), tuple(changes), tuple(problems))
+
+
+def segment_findings(segmentation: Segmentation) -> tuple[Finding, ...]:
+    """Return what is found about segments: AAG961 shells that must be cut, AAG962 to AAG964 what must change."""
+    return (*segmentation.changes, *segmentation.problems)

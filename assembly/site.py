@@ -1,11 +1,42 @@
-"""The work on the building site: feet, standing shells, ridges, cover (paper section 3.2)."""
+"""The work on site: feet, standing shells, ridges, cover (paper section 3.2); shells cut for the journey and joined.
 
-from collections.abc import Iterator
+A shell that is cut is put together whole in the workshop, because only whole it takes its shape: its beams and edge
+planks are made with their splices from the start. Every part is added there once; what the parting takes out and the
+joining puts in again are ``extras`` of these steps, and so are bracing and props.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from aag_cad.parts.marks import parse_mark, shell_of
-from aag_cad.parts.model import Gridshell
-from assembly.kit import shell_kit
+from aag_cad.parts.model import Gridshell, Shell
+from assembly.graph import joint_of
+from assembly.kit import Kit, shell_kit
+from assembly.language import Language, say
+from assembly.locking import LockingOrder
 from assembly.process import EVERYONE, PAIR, Work
+from assembly.ranges import joined_ranges, short_mark
+from assembly.seams import Seam, foot_joints, seams, segment_props, segments_of, standing_order
+from assembly.segment_sheet import brace_words
+from assembly.segments import Segment, Segmentation
+from assembly.splices import Splice
+
+_KINDS = {"W": "screw", "B": "bolt", "K": "block", "R": "strap", "N": "stud"}
+
+
+@dataclass(frozen=True)
+class _Site:
+    """What the work on site is made from."""
+
+    gridshell: Gridshell
+    segmentation: Segmentation | None
+    locking: dict[str, LockingOrder]
+    language: Language
+
+    def say(self, key: str, **figures: object) -> str:
+        """Return a title or a phrase of ``words/site.toml``."""
+        return say(self.language, f"site.{key}", **figures)
 
 
 def ridge_pairs(gridshell: Gridshell) -> tuple[tuple[str, str], ...]:
@@ -20,10 +51,205 @@ def ridge_pairs(gridshell: Gridshell) -> tuple[tuple[str, str], ...]:
     return tuple(sorted(pairs))
 
 
-def _ridges(gridshell: Gridshell) -> Iterator[Work]:
-    """Yield the joining of each pair of shells, with their blades and the fasteners of these."""
-    before: tuple[str, ...] = ()
-    for a, b in ridge_pairs(gridshell):
+def _fasteners(language: Language, marks: Sequence[str]) -> str:
+    """Return how many fasteners of each kind there are, in words."""
+    kinds = Counter(_KINDS.get(parse_mark(mark).part[:1] or parse_mark(mark).family, "bolt") for mark in marks)
+    counted = ((kind if count == 1 else f"{kind}s", count) for kind, count in sorted(kinds.items()))
+    return ", ".join(say(language, f"site.count.{kind}", count=count) for kind, count in counted)
+
+
+def _seam_extras(language: Language, seam: Seam, chapter: str) -> Iterator[str]:
+    """Yield what is taken out at a seam (``divide``) or put in again (``splice``): bolts of splices, fasteners."""
+    for kind, name in (("block", "blocks"), ("plate", "plates")):
+        cut = [splice for splice in seam.splices if splice.kind == kind]
+        if cut:
+            each = cut[0].bolts // 2
+            yield say(
+                language,
+                f"site.{chapter}.{name}",
+                line=short_mark(seam.line),
+                segment=seam.bare,
+                count=sum(splice.bolts // 2 for splice in cut),
+                each=each,
+                diameter=cut[0].diameter,
+                beams=joined_ranges([splice.member for splice in cut]),
+                joints=joined_ranges([splice.joint for splice in cut if splice.joint]),
+            )
+    if seam.fasteners:
+        joints = joined_ranges(tuple(dict.fromkeys(map(joint_of, seam.fasteners))))
+        told = _fasteners(language, seam.fasteners)
+        yield say(language, f"site.{chapter}.fasteners", line=short_mark(seam.line), fasteners=told, joints=joints)
+
+
+def _brace_extras(language: Language, segment: Segment, chapter: str) -> Iterator[str]:
+    for brace in segment.braces:
+        yield say(language, f"site.{chapter}.brace", segment=segment.name, brace=brace_words(brace, language))
+
+
+def _made(language: Language, splice: Splice) -> str:
+    stations = [cut.station for cut in splice.cuts]
+    return say(
+        language,
+        f"site.made.{splice.kind}",
+        beam=short_mark(splice.member),
+        line=short_mark(splice.line),
+        joint=short_mark(splice.joint) if splice.joint else "",
+        left=stations[0],
+        right=stations[-1],
+        length=splice.length,
+        bolts=splice.bolts,
+        diameter=splice.diameter,
+    )
+
+
+def made_with_splices(
+    works: Iterable[Work], segmentation: Segmentation | None, language: Language = "en"
+) -> Iterator[Work]:
+    """Yield works in which beams and edge planks that are cut for the journey are made with their splices.
+
+    The works that add their planks get an extra for each splice: where the planks are parted, block or plate, bolts.
+    """
+    splices = segmentation.splices if segmentation else ()
+    for work in works:
+        added = set(work.marks)
+        cut = [splice for splice in splices if any(cut.plank in added for cut in splice.cuts)]
+        yield replace(work, extras=(*work.extras, *(_made(language, splice) for splice in cut))) if cut else work
+
+
+def divide_works(shell: Shell, segmentation: Segmentation | None = None, language: Language = "en") -> tuple[Work, ...]:
+    """Return the work that parts a stiff shell into its segments for the journey; none if it travels whole.
+
+    Extras: the bracing of each segment, and what comes out of the splices and joints along each cut. Props: those that
+    each segment bears on when it is parted.
+    """
+    own, cuts = segments_of(segmentation, shell.mark), seams(shell, segmentation)
+    if not own:
+        return ()
+    lines = ", ".join(dict.fromkeys(short_mark(seam.line) for seam in cuts))
+    braces = (extra for segment in own for extra in _brace_extras(language, segment, "divide"))
+    names = ", ".join(segment.name for segment in own)
+    work = Work(
+        f"{shell.mark}.divide",
+        "divide",
+        say(language, "site.divide.title", shell=shell.mark, segments=names),
+        after=(f"{shell.mark}.tighten",),
+        assemblies=(shell.mark,),
+        least_crew=EVERYONE,
+        props=tuple(dict.fromkeys(mark for segment in own for mark in segment_props(shell, segment))),
+        extras=(*braces, *(extra for seam in cuts for extra in _seam_extras(language, seam, "divide"))),
+        notes=(say(language, "site.divide.order", lines=lines),),
+    )
+    return (work,)
+
+
+def _crown_props(site: _Site, shell: Shell) -> tuple[str, ...]:
+    """Return the props that a stiff shell needs until it leans on its neighbours, by the locking order."""
+    order = site.locking.get(shell.mark)
+    return tuple(prop.joint for prop in order.released.props) if order else ()
+
+
+def _prop_notes(site: _Site, shell: Shell) -> tuple[str, ...]:
+    order = site.locking.get(shell.mark)
+    if order is None or not order.released.props:
+        return ()
+    at = short_mark(order.released.at)
+    return (site.say("stand.props", sag=order.released.displacement, joint=at),)
+
+
+def _carried(segment: Segment) -> set[str]:
+    return {*segment.parts, *(joint for _, joint in segment.splices)}
+
+
+def _standing_notes(site: _Site, segment: Segment, beside: Sequence[Seam], others: Sequence[str]) -> tuple[str, ...]:
+    """Return how a segment is set down beside those that stand."""
+    if not beside:
+        after = (site.say("stand.first", segment=segment.name, others=", ".join(others)),)
+        return (*after, site.say("stand.alone", segment=segment.name))
+    names = [next(iter({seam.keeper, seam.bare} - {segment.name})) for seam in beside]
+    gaps = [round(seam.gap) for seam in beside]
+    if len(beside) > 1:
+        return (site.say("stand.closing", b=names[0], c=names[1], gap=sum(gaps)),)
+    return (site.say("stand.beside", b=names[0], gap=gaps[0], line=short_mark(beside[0].line)),)
+
+
+def _split_standing(shell: Shell, kit: Kit, own: Sequence[Segment]) -> dict[str, tuple[str, ...]]:
+    """Return the bolts of the shoes by segment: those of its geodesics' feet."""
+    homes = {joint: segment.name for segment in own for joint in foot_joints(shell, segment)}
+    groups: dict[str, list[str]] = {segment.name: [] for segment in own}
+    for mark in kit.standing:
+        groups[homes.get(joint_of(mark), own[0].name)].append(mark)
+    return {name: tuple(marks) for name, marks in groups.items()}
+
+
+def _segment_works(site: _Site, shell: Shell, kit: Kit, feet: str) -> Iterator[Work]:
+    """Yield the standing of the segments of a cut shell, each joined to its neighbour before the next one comes."""
+    order = list(standing_order(shell, site.segmentation))
+    own = [segment for segment, _ in order]
+    bolts, crown = _split_standing(shell, kit, own), _crown_props(site, shell)
+    under = {joint: next((s.name for s in own if joint in _carried(s)), own[0].name) for joint in crown}
+    open_seams = Counter(name for _, beside in order for seam in beside for name in (seam.keeper, seam.bare))
+    named = {segment.name: segment for segment in own}
+    before: tuple[str, ...] = (feet, f"{shell.mark}.divide")
+    for i, (segment, beside) in enumerate(order):
+        standing = bolts[segment.name]
+        notes = _standing_notes(site, segment, beside, [other.name for other in own[i + 1 :]])
+        held = tuple(joint for joint in crown if under[joint] == segment.name)
+        stand = Work(
+            f"site.stand.{segment.name}",
+            "stand",
+            site.say("stand.segment" if standing else "stand.raised", segment=segment.name),
+            after=before,
+            marks=standing,
+            assemblies=(shell.mark,),
+            least_crew=EVERYONE,
+            props=tuple(dict.fromkeys((*segment_props(shell, segment), *held))),
+            notes=(*notes, *(_prop_notes(site, shell) if held else ())),
+        )
+        yield stand
+        before = (stand.id,)
+        for seam in beside:
+            open_seams.subtract((seam.keeper, seam.bare))
+            whole = [named[name] for name in (seam.keeper, seam.bare) if not open_seams[name]]
+            bare = (extra for other in whole for extra in _brace_extras(site.language, other, "splice"))
+            splice = Work(
+                f"site.splice.{seam.keeper}.{seam.bare}",
+                "splice",
+                site.say("splice.title", a=seam.keeper, b=seam.bare, line=short_mark(seam.line)),
+                after=before,
+                assemblies=(shell.mark,),
+                least_crew=2 * PAIR,
+                extras=(*_seam_extras(site.language, seam, "splice"), *bare),
+            )
+            yield splice
+            before = (splice.id,)
+
+
+def _standing(site: _Site, shell: Shell, feet: str) -> tuple[Work, ...]:
+    """Return the work by which a shell, whole or in segments, comes to stand on its feet."""
+    kit = shell_kit(shell)
+    if segments_of(site.segmentation, shell.mark):
+        return tuple(_segment_works(site, shell, kit, feet))
+    work = Work(
+        f"site.stand.{shell.mark}",
+        "stand",
+        site.say("stand.shell", shell=shell.mark),
+        after=(feet, f"{shell.mark}.tighten"),
+        marks=kit.standing,
+        assemblies=(shell.mark,),
+        least_crew=EVERYONE,
+        props=_crown_props(site, shell),
+        notes=_prop_notes(site, shell),
+    )
+    return (work,)
+
+
+def _ridges(site: _Site, stood: dict[str, tuple[Work, ...]]) -> Iterator[Work]:
+    """Yield the joining of each pair of shells, with their blades and the fasteners of these; props off at the end."""
+    gridshell, before = site.gridshell, ()
+    pairs = ridge_pairs(gridshell)
+    props = {mark: tuple(joint for work in works for joint in work.props) for mark, works in stood.items()}
+    every = tuple(dict.fromkeys(joint for joints in props.values() for joint in joints))
+    for i, (a, b) in enumerate(pairs):
         blades = [blade.mark for blade in gridshell.blades if set(parse_mark(blade.mark).family[1:]) == {a[1:], b[1:]}]
         fasteners = [
             mark
@@ -31,47 +257,51 @@ def _ridges(gridshell: Gridshell) -> Iterator[Work]:
             if {shell_of(member) for member in joint.members} - {""} == {a, b}
             for mark in joint.fasteners
         ]
+        last = i == len(pairs) - 1
         work = Work(
             f"site.ridge.{a}.{b}",
             "ridges",
-            f"Join shells {a} and {b} along their ridge",
-            after=(f"site.stand.{a}", f"site.stand.{b}", *before),
+            site.say("ridge.title", a=a, b=b),
+            after=(*(work.id for mark in (a, b) for work in stood[mark][-1:]), *before),
             marks=(*blades, *fasteners),
             assemblies=(a, b),
             least_crew=2 * PAIR,
+            props=tuple(dict.fromkeys((*props[a], *props[b]))),
+            extras=(site.say("ridge.props_off", joints=joined_ranges(every)),) if last and every else (),
+            notes=(site.say("ridge.props_stay"),) if every and not last else (),
         )
         yield work
         before = (work.id,)
 
 
-def site_works(gridshell: Gridshell) -> tuple[Work, ...]:
-    """Return the work that makes the gridshell of stiff shells, in an order in which it can be done."""
-    kits = {shell.mark: shell_kit(shell) for shell in gridshell.shells}
+def site_works(
+    gridshell: Gridshell,
+    segmentation: Segmentation | None = None,
+    language: Language = "en",
+    locking: Sequence[LockingOrder] = (),
+) -> tuple[Work, ...]:
+    """Return the work that makes the gridshell of stiff shells, in an order in which it can be done.
+
+    A shell that ``segmentation`` cuts stands segment by segment, each joined to its neighbours (``standing_order``).
+    Props of ``locking`` under the finished shells (``LockingOrder.released``) stand before a shell leaves its slings,
+    and stay until the last ridge is joined.
+    """
+    site = _Site(gridshell, segmentation, {order.shell: order for order in locking}, language)
     feet = Work(
         "site.feet",
         "feet",
-        "Set out the feet of the vault",
+        site.say("feet.title"),
         after=(),
-        marks=tuple(mark for kit in kits.values() for mark in kit.feet),
+        marks=tuple(mark for shell in gridshell.shells for mark in shell_kit(shell).feet),
         least_crew=PAIR,
     )
-    standing = tuple(
-        Work(
-            f"site.stand.{mark}",
-            "stand",
-            f"Stand shell {mark} on its feet",
-            after=(feet.id, f"{mark}.tighten"),
-            marks=kit.standing,
-            assemblies=(mark,),
-            least_crew=EVERYONE,
-        )
-        for mark, kit in kits.items()
-    )
-    ridges = tuple(_ridges(gridshell))
-    last = tuple(work.id for work in ridges[-1:] or standing)
+    stood = {shell.mark: _standing(site, shell, feet.id) for shell in gridshell.shells}
+    standing = tuple(work for works in stood.values() for work in works)
+    ridges = tuple(_ridges(site, stood))
+    last = tuple(work.id for work in ridges[-1:] or (works[-1] for works in stood.values()))
     covering = tuple(
-        Work(f"site.cover.{mark}", "cover", f"Cover shell {mark}", after=last, marks=kit.cover, least_crew=PAIR)
-        for mark, kit in kits.items()
+        Work(f"site.cover.{mark}", "cover", site.say("cover.title", shell=mark), last, kit.cover, least_crew=PAIR)
+        for mark, kit in ((shell.mark, shell_kit(shell)) for shell in gridshell.shells)
         if kit.cover
     )
     return (feet, *standing, *ridges, *covering)

@@ -37,7 +37,8 @@ class Splice:
 
     ``line`` is the geodesic along which the cut runs. A ``block`` lies in the gap of a beam, a ``plate`` on an edge
     plank; ``bolts`` is the count of both sides, ``columns`` how many stand one behind the other on each side;
-    ``required`` is the least ``clear``; ``left_out`` are the marks that it stands for. ``problem`` is "" if it fits.
+    ``required`` is the least ``clear``; ``room`` how far a block may reach from the cut and ``reach`` how far it does;
+    ``left_out`` are the marks that it stands for.
     """
 
     member: str
@@ -51,7 +52,18 @@ class Splice:
     bolts: int
     diameter: float
     left_out: tuple[str, ...]
-    problem: str = ""
+    room: float = float("inf")
+    reach: float = 0.0
+
+    @property
+    def clear(self) -> float:
+        """The distance from its cuts to the nearest hole that stays, mm."""
+        return min(cut.clear for cut in self.cuts)
+
+    @property
+    def fits(self) -> bool:
+        """Whether bolts, cuts and holes keep their distances and the block has room."""
+        return self.clear >= self.required and self.room >= self.reach
 
 
 def _clear(holes: tuple[Hole, ...], station: float) -> float:
@@ -94,13 +106,6 @@ def _beam_splice(
         default=0,
     )
     half = 2.0 * limits.a3_t + (max(columns, 1) - 1) * limits.a1
-    problem = ""
-    if not columns:
-        problem = (
-            f"{track.mark}: {clear:.0f} mm from the cut at {crossing.joint} to the next hole and {room:.0f} mm to the "
-            f"next stud or block, a splice needs {limits.a3_t + limits.a1:.0f} and {half:.0f} mm; "
-            "take thinner bolts, another line, or prove a shorter splice"
-        )
     return Splice(
         track.mark,
         line,
@@ -113,7 +118,8 @@ def _beam_splice(
         2 * _ACROSS * max(columns, 1),
         diameter,
         tuple(mark for mark in joint.members if mark in blocks) + tuple(taken),
-        problem,
+        room,
+        half,
     )
 
 
@@ -149,15 +155,9 @@ def _edge_splice(plank: Plank, line: str, span: tuple[float, float], diameter: f
     cut = (start + end) / 2.0
     clear, limits = _clear(plank.blank.holes, cut), bolt_distances(diameter, 0.0)
     required = limits.a3_t + limits.a1
-    problem = ""
-    if clear < required:
-        problem = (
-            f"{plank.mark}: {clear:.0f} mm from the cut beside {line} to the next hole, a splice needs {required:.0f} "
-            "mm; cut along another geodesic, move a joint, or leave the edge plank off until the segments are joined"
-        )
     length = 2.0 * (limits.a3_t + _PLATE_END * diameter)
     cuts = (PlankCut(plank.mark, cut, clear),)
-    return Splice(plank.mark, line, "", "plate", cuts, required, length, 1, 2 * _ACROSS, diameter, (), problem)
+    return Splice(plank.mark, line, "", "plate", cuts, required, length, 1, 2 * _ACROSS, diameter, ())
 
 
 def edge_splices(shell: Shell, grid: Tracks) -> dict[tuple[str, int], Splice]:

@@ -1,15 +1,13 @@
 """What the card of a step tells the crew: tools, instructions and what to check before going on."""
 
-import tomllib
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from aag_cad.parts.model import Bolt, Gridshell, JointKind, Rod, Screw, Shell
-from aag_cad.parts.products import product_name
-from aag_cad.resources import template
+from assembly.language import Language, say, says
+from assembly.names import figure, part_name
 from assembly.steps import Phase
 
 Fastener: TypeAlias = Bolt | Screw | Rod
@@ -23,8 +21,10 @@ _HANDLED: dict[Phase, tuple[JointKind, ...]] = {
     "edge planks": ("boundary", "ridge"),
     "fix geodesics": ("AG",),
     "tighten": ("AA", "AG", "boundary", "ridge"),
+    "divide": ("AG",),
     "feet": ("footing",),
     "stand": ("foot", "footing"),
+    "splice": ("AG",),
     "ridges": ("blade",),
     "cover": ("cover",),
 }
@@ -39,14 +39,23 @@ class Wording:
     hold: str
 
 
-@cache
-def _process() -> dict[str, Any]:
-    with template("printouts", "process.toml").open("rb") as file:
-        return tomllib.load(file)
+def _list_of(words: Sequence[str], otherwise: str, language: Language) -> str:
+    return say(language, "phases.words.and").join(words) or otherwise
 
 
-def _list_of(words: Sequence[str], otherwise: str) -> str:
-    return " and ".join(words) or otherwise
+def spanners(parts: Iterable[object], language: Language = "en") -> str:
+    """Return the spanners for the bolts and threaded rods among some parts, two of each size."""
+    sizes = sorted({part.across_flats for part in parts if isinstance(part, Bolt | Rod)})
+    listed = [say(language, "phases.words.spanner", size=figure(f"{size:g}", language)) for size in sizes]
+    return _list_of(listed, say(language, "phases.words.spanners"), language)
+
+
+def _drill(parts: Iterable[Fastener], language: Language) -> str:
+    screws = sorted({part.diameter for part in parts if isinstance(part, Screw)})
+    drilled = [figure(f"{_PRE_DRILL * diameter:.1f}", language) for diameter in screws]
+    bits = [say(language, "phases.words.bit", size=size) for size in drilled]
+    listed = _list_of(bits, say(language, "phases.words.bits"), language)
+    return say(language, "phases.words.drill", bits=listed)
 
 
 def fasteners_by_kind(gridshell: Gridshell, shells: Sequence[Shell]) -> dict[JointKind, list[Fastener]]:
@@ -62,26 +71,26 @@ def fasteners_by_kind(gridshell: Gridshell, shells: Sequence[Shell]) -> dict[Joi
 
 
 def wording(
-    phase: Phase, fasteners: Mapping[JointKind, Sequence[Fastener]], below: str = "the layer beneath"
+    phase: Phase,
+    fasteners: Mapping[JointKind, Sequence[Fastener]],
+    below: str = "",
+    language: Language = "en",
 ) -> Wording:
-    """Return the words for a phase of work on joints with some fasteners; ``below``: what a laid layer rests on.
+    """Return the words for a phase of work on joints with some fasteners.
 
-    The texts are those of ``templates/printouts/process.toml``; a screw's hole is pre-drilled to 0.7 of its diameter.
+    ``below`` is what a laid layer rests on, in the language of the card; "" stands for the layer beneath. The texts are
+    those of ``templates/printouts/words/phases.toml``; a screw's hole is pre-drilled to 0.7 of its diameter.
     """
     handled = [part for kind in _HANDLED.get(phase, ()) for part in fasteners.get(kind, ())]
-    flats = sorted({part.across_flats for part in handled if isinstance(part, Bolt | Rod)})
-    screws = sorted({part.diameter for part in handled if isinstance(part, Screw)})
-    bits = [f"{_PRE_DRILL * diameter:.1f} mm bit" for diameter in screws]
-    bolts = sorted({product_name(part) for part in handled if isinstance(part, Bolt)})
+    bolts = sorted({part_name(part, language) for part in handled if isinstance(part, Bolt)})
     figures = {
-        "spanners": _list_of([f"two {size:g} mm spanners" for size in flats], "two spanners"),
-        "drill": f"cordless drill, {_list_of(bits, 'drill bit')}, screw bit",
-        "bolts": _list_of(bolts, "bolts"),
-        "below": below,
+        "spanners": spanners(handled, language),
+        "drill": _drill(handled, language),
+        "bolts": _list_of(bolts, say(language, "phases.words.bolts"), language),
+        "below": below or say(language, "phases.words.below"),
     }
-    texts = _process()[phase]
     return Wording(
-        tools=tuple(text.format_map(figures) for text in texts["tools"]),
-        instructions=tuple(text.format_map(figures) for text in texts["instructions"]),
-        hold=texts["hold"].format_map(figures),
+        tools=says(language, f"phases.{phase}.tools", **figures),
+        instructions=says(language, f"phases.{phase}.instructions", **figures),
+        hold=say(language, f"phases.{phase}.hold", **figures),
     )

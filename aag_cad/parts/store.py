@@ -52,8 +52,11 @@ def _curve(data: Any, path: str) -> FramedCurve:
     return FramedCurve(**arrays)
 
 
-def _read(kind: Any, data: Any, path: str) -> Any:
-    """Return the value of a type from plain data; FileError with the path of what does not fit."""
+def value_of(kind: Any, data: Any, path: str) -> Any:
+    """Return the value of a type from plain data, as JSON gives it; FileError with the path of what does not fit.
+
+    Types are dataclasses, tuples, literals, curves, texts, booleans and numbers.
+    """
     if kind is FramedCurve:
         return _curve(data, path)
     if is_dataclass(kind) and isinstance(kind, type):
@@ -64,7 +67,7 @@ def _read(kind: Any, data: Any, path: str) -> Any:
         missing = sorted(f.name for f in fields(kind) if f.name not in data and f.default is MISSING)
         if unknown or missing:
             raise FileError(f"{path}: unknown keys {unknown}, missing keys {missing}")
-        return kind(**{name: _read(hints[name], data[name], f"{path}.{name}") for name in hints if name in data})
+        return kind(**{name: value_of(hints[name], data[name], f"{path}.{name}") for name in hints if name in data})
     origin, args = get_origin(kind), get_args(kind)
     if origin is tuple:
         if not isinstance(data, list):
@@ -72,7 +75,7 @@ def _read(kind: Any, data: Any, path: str) -> Any:
         kinds = [args[0]] * len(data) if args[1:] == (Ellipsis,) else list(args)
         if len(kinds) != len(data):
             raise FileError(f"{path}: expected {len(kinds)} values, found {len(data)}")
-        return tuple(_read(k, item, f"{path}[{i}]") for i, (k, item) in enumerate(zip(kinds, data, strict=True)))
+        return tuple(value_of(k, item, f"{path}[{i}]") for i, (k, item) in enumerate(zip(kinds, data, strict=True)))
     if origin is Literal:
         if data not in args:
             raise FileError(f"{path}: {data!r} is none of {', '.join(map(repr, args))}")
@@ -102,5 +105,5 @@ def read_gridshell(text: str) -> Gridshell:
         raise FileError(
             f"gridshell.json: schema_version {version!r}, this program reads {SCHEMA_VERSION}; build the design again"
         )
-    gridshell: Gridshell = _read(Gridshell, data, "gridshell")
+    gridshell: Gridshell = value_of(Gridshell, data, "gridshell")
     return gridshell

@@ -15,7 +15,7 @@ sides = st.builds(Mark, st.just(2), st.sampled_from(["A1", "A2"]), indices, st.s
 
 def expanded(text: str, shell: int) -> set[str]:
     """Read a printed range back, as a carpenter would."""
-    found = re.fullmatch(r"(\S+?)(?: to (\S+))?(?: ([LR+]+))?", text)
+    found = re.fullmatch(r"(\S+?)(?: … (\S+))?(?: ([LR+]+))?", text)
     assert found
     first, last, parts = found[1], found[2] or found[1], (found[3] or "").split("+")
     a, b = (parse_mark(end if end.startswith("S") else f"S{shell}-{end}") for end in (first, last))
@@ -36,10 +36,11 @@ def test_ranges_of_sibling_planks_read_back(marks: set[Mark]) -> None:
     assert set().union(*(expanded(text, 2) for text in texts)) == {str(mark) for mark in marks}
 
 
-def test_neighbours_become_one_range() -> None:
+def test_three_neighbours_or_more_become_one_range() -> None:
     marks = [f"S1-A1-{i:02d}-{side}" for i in (1, 2, 3) for side in "LR"]
-    assert joined_ranges(marks) == "A1-01 to A1-03 L+R"
-    assert joined_ranges(["S1-K-004", "S1-K-001", "S1-K-002"]) == "K-001 to K-002, K-004"
+    assert joined_ranges(marks) == "A1-01 … A1-03 L+R"
+    assert joined_ranges(["S1-K-004", "S1-K-001", "S1-K-002"]) == "K-001, K-002, K-004"
+    assert joined_ranges(["S1-K-004", "S1-K-003", "S1-K-001", "S1-K-002"]) == "K-001 … K-004"
 
 
 def test_marks_of_several_shells_keep_theirs() -> None:

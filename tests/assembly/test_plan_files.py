@@ -8,8 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aag_cad.errors import AagError
+from aag_cad.findings import Finding
 from aag_cad.parts.model import Gridshell
 from assembly.errors import PlanError
+from assembly.language import LANGUAGES
 from assembly.plan import plan_json, plan_of, read_plan
 from assembly.steps import PHASES, Plan, Step
 
@@ -29,8 +31,28 @@ steps = st.builds(
     predecessors=listed,
     instructions=listed,
     hold=texts,
+    props=listed,
+    extras=listed,
 )
-plans = st.builds(Plan, name=texts, steps=st.lists(steps, max_size=4).map(tuple))
+numbers = st.floats(allow_nan=False, allow_infinity=False)
+findings = st.builds(
+    Finding,
+    code=texts,
+    severity=st.sampled_from(["error", "warning", "note"]),
+    mark=texts,
+    what=texts,
+    found=numbers,
+    allowed=numbers,
+    unit=texts,
+    remedy=texts,
+)
+plans = st.builds(
+    Plan,
+    name=texts,
+    steps=st.lists(steps, max_size=4).map(tuple),
+    language=st.sampled_from(LANGUAGES),
+    findings=st.lists(findings, max_size=2).map(tuple),
+)
 
 
 @given(plans)
@@ -55,12 +77,13 @@ def _file(**changes: Any) -> str:
     [
         ("{", "not valid JSON"),
         ("[]", "schema_version"),
-        ('{"schema_version": 99}', "schema_version must be 1"),
-        ('{"schema_version": 1, "name": "vault"}', "list of steps"),
-        ('{"schema_version": 1, "name": "vault", "steps": [{}]}', r"steps\[0\]: keys"),
+        ('{"schema_version": 99}', "schema_version must be 2"),
+        ('{"schema_version": 2, "name": "vault"}', "missing keys.*steps"),
+        ('{"schema_version": 2, "name": "v", "language": "fr", "steps": []}', "language: 'fr' is none of 'en', 'de'"),
+        ('{"schema_version": 2, "name": "vault", "steps": [{}]}', r"steps\[0\]: .*missing keys"),
         (_file(phase="lunch"), r"steps\[0\]\.phase: 'lunch'"),
-        (_file(crew="4"), r"steps\[0\]\.crew: '4'"),
-        (_file(crew=True), r"steps\[0\]\.crew: True"),
+        (_file(crew="4"), r"steps\[0\]\.crew: expected int, found '4'"),
+        (_file(crew=True), r"steps\[0\]\.crew: expected int, found True"),
         (_file(marks=[1]), r"steps\[0\]\.marks"),
         (_file(hold=None), r"steps\[0\]\.hold"),
     ],

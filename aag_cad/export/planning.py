@@ -1,0 +1,93 @@
+"""The files of a plan: what is done, when, in which order, in which segments; the booklets and the graph."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
+from typing import TypeAlias
+
+import networkx as nx
+
+from aag_cad.design_making import Crew
+from aag_cad.export.tables import write_locking_table, write_segment_tables
+from aag_cad.files import write_text
+from aag_cad.parts.model import Gridshell
+from assembly.gantt import gantt_svg
+from assembly.graph import assembly_graph
+from assembly.graph_file import graph_json, graphml
+from assembly.ical import write_calendar
+from assembly.locking import locking_svg
+from assembly.page import graph_html, write_page
+from assembly.plan import Plan, plan_json
+from assembly.planned import Planned
+from assembly.printout import write_disassembly, write_sequence
+from assembly.schedule import Schedule, schedule_csv
+
+
+@dataclass(frozen=True)
+class Planning:
+    """What the files of a plan are written from."""
+
+    planned: Planned
+    gridshell: Gridshell
+    crew: Crew
+
+
+def write_schedule(plan: Plan, schedule: Schedule, title: str, crew: Crew, folder: Path) -> None:
+    """Write the schedule as table and chart and, if the crew has a first working day, as calendar."""
+    write_text(folder / "tables" / "schedule.csv", schedule_csv(plan, schedule))
+    write_text(folder / "schedule.svg", gantt_svg(plan, schedule, title))
+    if crew.start is not None:
+        write_calendar(plan, schedule, date.fromisoformat(crew.start), folder / "schedule.ics", crew.days_per_week)
+
+
+def _write_plan(planning: Planning, folder: Path) -> None:
+    write_text(folder / "plan.json", plan_json(planning.planned.plan))
+    write_text(folder / "disassembly.json", plan_json(planning.planned.down))
+
+
+def _write_schedule(planning: Planning, folder: Path) -> None:
+    planned = planning.planned
+    write_schedule(planned.plan, planned.schedule, planning.gridshell.title, planning.crew, folder)
+
+
+def _write_locking(planning: Planning, folder: Path) -> None:
+    orders = planning.planned.locking
+    write_locking_table(orders, folder / "tables" / "locking.csv")
+    write_text(folder / "locking.svg", locking_svg(orders[0]))
+
+
+def _write_segments(planning: Planning, folder: Path) -> None:
+    tables = folder / "tables"
+    write_segment_tables(planning.planned.segmentation, tables / "segments.csv", tables / "splices.csv")
+
+
+def _write_sequence(planning: Planning, folder: Path) -> None:
+    write_sequence(planning.planned, planning.gridshell, folder / "sequence.pdf")
+    write_disassembly(planning.planned, planning.gridshell, folder / "disassembly.pdf")
+    write_page(planning.planned, planning.gridshell, folder / "sequence.html")
+
+
+def _write_graph(planning: Planning, folder: Path) -> None:
+    graph = assembly_graph(planning.gridshell)
+    write_text(folder / "graph.json", graph_json(graph))
+    write_text(folder / "graph.graphml", graphml(graph))
+
+
+PlanWriter: TypeAlias = Callable[[Planning, Path], None]
+PLAN_WRITERS: dict[str, PlanWriter] = {
+    "plan": _write_plan,
+    "schedule": _write_schedule,
+    "locking": _write_locking,
+    "segments": _write_segments,
+    "sequence": _write_sequence,
+    "graph": _write_graph,
+}
+
+
+def write_graph_plan(graph: "nx.MultiGraph[str]", plan: Plan, schedule: Schedule, crew: Crew, folder: Path) -> None:
+    """Write the files of the plan of any graph of parts: plan, schedule, page for phones, and the graph as GraphML."""
+    write_text(folder / "plan.json", plan_json(plan))
+    write_schedule(plan, schedule, plan.name, crew, folder)
+    write_text(folder / "sequence.html", graph_html(plan, schedule, graph))
+    write_text(folder / "graph.graphml", graphml(graph))

@@ -1,0 +1,151 @@
+"""Planning alone: a design, a gridshell.json or any graph of parts -> plan -> files, or why a part comes when it does."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import networkx as nx
+
+from aag_cad.design import load_design
+from aag_cad.design_making import Crew
+from aag_cad.errors import DesignError, FileError
+from aag_cad.export.planning import PLAN_WRITERS, Planning, write_graph_plan
+from aag_cad.files import publishing, sizes_below
+from aag_cad.findings import Finding, worst_first
+from aag_cad.parts.model import Gridshell
+from aag_cad.parts.store import read_gridshell
+from aag_cad.pipeline import gridshell_of
+from assembly.explain import explanation
+from assembly.graph import assembly_graph
+from assembly.graph_file import graph_text, read_graph, shipped_graphs
+from assembly.graph_plan import graph_durations, graph_plan
+from assembly.language import Language
+from assembly.locking import LockingOrder
+from assembly.plan import Plan
+from assembly.planned import NO_LIMITS, limits_of, planned_of
+from assembly.schedule import Schedule, schedule_of
+from assembly.segment_search import Limits
+
+Report = Callable[[str], None]
+# For what names no crew: four people who lift 25 kg each (EN 1005-2, the mass that most adults may lift).
+FOUR = Crew.model_validate({"people": 4, "lift_limit": 25.0})
+STAGES = len(("read", "plan", *PLAN_WRITERS))
+
+
+@dataclass(frozen=True)
+class Source:
+    """What is planned: a gridshell with its crew and transport, or any graph of parts with a crew."""
+
+    name: str
+    crew: Crew
+    limits: Limits
+    gridshell: Gridshell | None = None
+    graph: "nx.MultiGraph[str] | None" = None
+
+
+@dataclass(frozen=True)
+class Result:
+    """What was planned: plan, schedule, locking orders, the graph's maker, and what writes the files."""
+
+    plan: Plan
+    schedule: Schedule
+    locking: tuple[LockingOrder, ...]
+    graph: Callable[[], "nx.MultiGraph[str]"]
+    writers: dict[str, Callable[[Path], None]]
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What cannot be done so, the worst first."""
+        return worst_first(self.plan.findings)
+
+
+def _read_text(path: str) -> str:
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path}: cannot be read as a text file: {error}") from error
+
+
+def _keys(text: str, path: str) -> set[str]:
+    try:
+        data: Any = json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise FileError(f"{path}: not valid JSON: {error}") from error
+    return set(data) if isinstance(data, dict) else set()
+
+
+def read_source(source: str, people: int | None = None, limits: Limits | None = None) -> Source:
+    """Return what a design (file or shipped name), a gridshell.json, or a graph (file or shipped name) asks to plan.
+
+    ``people`` and ``limits`` stand in place of the crew and the transport of the design. FileError, DesignError or
+    PlanError where the source cannot be read.
+    """
+    if source in shipped_graphs() or source.lower().endswith(".json"):
+        text = graph_text(source) if source in shipped_graphs() else _read_text(source)
+        crew, keys = _crew_with(FOUR, people), _keys(text, source)
+        if "shells" in keys:
+            gridshell = read_gridshell(text)
+            return Source(gridshell.name, crew, limits or NO_LIMITS, gridshell=gridshell)
+        if "nodes" in keys:
+            graph = read_graph(text)
+            return Source(str(graph.name), crew, NO_LIMITS, graph=graph)
+        raise FileError(f"{source}: neither a gridshell (key shells) nor a graph of parts (keys nodes and edges)")
+    design = load_design(source)
+    crew = _crew_with(design.crew, people)
+    return Source(design.project.name, crew, limits or limits_of(design.transport), gridshell=gridshell_of(design))
+
+
+def _crew_with(crew: Crew, people: int | None) -> Crew:
+    if people is None:
+        return crew
+    least, most = 1, 40
+    if not least <= people <= most:
+        raise DesignError(f"--crew: {people} people; allowed {least} to {most}")
+    return crew.model_copy(update={"people": people})
+
+
+def planned_source(source: Source, language: Language = "en", edges_first: bool = True) -> Result:
+    """Return the plan of a source with what writes its files; PlanError where it cannot be planned.
+
+    ``edges_first``: edge planks are fixed before all geodesics, as in the paper.
+    """
+    crew = source.crew
+    if source.gridshell is not None:
+        gridshell = source.gridshell
+        planned = planned_of(gridshell, crew, source.limits, language, edges_first=edges_first)
+        planning = Planning(planned, gridshell, crew)
+        return Result(
+            planned.plan,
+            planned.schedule,
+            planned.locking,
+            lambda: assembly_graph(gridshell),
+            {name: _bound(writer, planning) for name, writer in PLAN_WRITERS.items()},
+        )
+    assert source.graph is not None
+    graph = source.graph
+    plan = graph_plan(graph, crew.people, crew.lift_limit, language)
+    schedule = schedule_of(plan, graph_durations(plan, graph, crew.minutes), crew.people, crew.hours_per_day)
+    writers: dict[str, Callable[[Path], None]] = {
+        "files": lambda folder: write_graph_plan(graph, plan, schedule, crew, folder)
+    }
+    return Result(plan, schedule, (), lambda: graph, writers)
+
+
+def _bound(writer: Callable[[Planning, Path], None], planning: Planning) -> Callable[[Path], None]:
+    return lambda folder: writer(planning, folder)
+
+
+def write_plan(result: Result, folder: Path, report: Report = lambda stage: None) -> dict[str, int]:
+    """Write the files of a plan into a folder, all or none; return their sizes. FileError if it cannot be written."""
+    with publishing(folder) as staging:
+        for stage, write in result.writers.items():
+            report(stage)
+            write(staging)
+        return sizes_below(staging)
+
+
+def explained(result: Result, mark: str) -> list[str]:
+    """Return why a part or beam comes when it does, one line each; PlanError if nothing has the mark."""
+    return explanation(result.graph(), result.plan, mark, result.schedule, result.locking)

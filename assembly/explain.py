@@ -1,0 +1,153 @@
+"""Why a part comes when it does: what must be there before it, what waits for it, what locks it, what time it has."""
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+
+import networkx as nx
+
+from assembly.errors import PlanError
+from assembly.graph import joint_of
+from assembly.language import Language, say
+from assembly.locking import LockingOrder, frequency
+from assembly.ranges import joined_ranges
+from assembly.schedule import Schedule
+from assembly.steps import Plan, Step
+
+_MOST_SHOWN = 8
+
+
+def step_of_parts(plan: Plan, graph: "nx.MultiGraph[str]") -> dict[str, Step]:
+    """Return the step in which each part comes to its place; parts of a coupled beam come when the beam is laid."""
+    at = {mark: step for step in plan.steps for mark in step.marks}
+    laid = {beam: step for step in plan.steps if step.phase in ("lay A1", "lay A2", "lay") for beam in step.assemblies}
+    return at | {mark: laid[beam] for mark, beam in graph.nodes(data="beam") if beam in laid}
+
+
+def _piece(graph: "nx.MultiGraph[str]", mark: str) -> tuple[str, ...]:
+    """Return the parts of a mark: those of a coupled beam, or the part itself; PlanError if there is none."""
+    if mark in graph:
+        return (mark,)
+    parts = tuple(node for node, beam in graph.nodes(data="beam") if beam == mark)
+    if not parts:
+        known = sorted(node for node in graph if node.startswith(mark))[:_MOST_SHOWN]
+        listed = ", ".join(known or sorted(graph)[:_MOST_SHOWN])
+        raise PlanError(f"--explain {mark}: no part or beam has this mark; marks are such as {listed}")
+    return parts
+
+
+def _neighbours(graph: "nx.MultiGraph[str]", parts: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Yield (relation, mark) of what meets some parts: it lies under or over them, or is joined to them."""
+    own, beam = set(parts), graph.nodes[parts[0]].get("beam", "")
+    for part in parts:
+        for _, other, edge in graph.edges(part, data=True):
+            home = graph.nodes[other].get("beam", "")
+            if other in own or (beam and home == beam):
+                continue
+            above = edge.get("above", "")
+            relation = "joined" if not above else "over" if above == other else "under"
+            yield relation, home or other
+
+
+def _around(
+    graph: "nx.MultiGraph[str]", parts: Sequence[str], at: Mapping[str, Step]
+) -> dict[tuple[int, str], list[str]]:
+    """Return what meets some parts by the number of the step in which it comes, and by relation."""
+    homes = {graph.nodes[mark].get("beam", ""): mark for mark in graph}
+    found: dict[tuple[int, str], list[str]] = defaultdict(list)
+    for relation, mark in _neighbours(graph, parts):
+        step = at.get(mark) or at.get(homes.get(mark, ""))
+        if step is not None and mark not in found[step.number, relation]:
+            found[step.number, relation].append(mark)
+    return found
+
+
+def _fastened(
+    graph: "nx.MultiGraph[str]", parts: Sequence[str], plan: Plan, step: Step
+) -> dict[tuple[int, str], list[str]]:
+    """Return the fasteners at the joints of some parts by the number of the step that puts them in, if another one."""
+    joints = {joint for part in parts for _, _, joint in graph.edges(part, keys=True)}
+    found: dict[tuple[int, str], list[str]] = defaultdict(list)
+    for other in plan.steps:
+        marks = [mark for mark in other.marks if joint_of(mark) in joints and mark not in parts]
+        if other is not step and marks:
+            found[other.number, "fastened"] = marks
+    return found
+
+
+def _locked(mark: str, orders: Sequence[LockingOrder], language: Language) -> Iterator[str]:
+    """Yield when a flat plank is fixed in the locking order, and what that does."""
+    for order in orders:
+        for i, step in enumerate(order.steps):
+            if mark in step.marks:
+                before = order.steps[i - 1]
+                yield say(
+                    language, "explain.fixed", place=i, count=len(order.steps) - 1,
+                    before=before.soft_modes, after=step.soft_modes,
+                    low=frequency(before.eigenvalues[0]), high=frequency(step.eigenvalues[0]),
+                )  # fmt: skip
+
+
+def _neighbour_lines(
+    around: Mapping[tuple[int, str], Sequence[str]], plan: Plan, numbers: set[int]
+) -> Iterator[tuple[int, str]]:
+    """Yield (number of step, line) for what meets a part and comes in some steps."""
+    for (number, relation), marks in sorted(around.items()):
+        if number in numbers:
+            shown = joined_ranges(marks) if len(marks) <= _MOST_SHOWN else f"{joined_ranges(marks[:_MOST_SHOWN])} …"
+            title = plan.steps[number - 1].title
+            yield number, say(plan.language, f"explain.{relation}", number=number, title=title, marks=shown)
+
+
+def _reasons(plan: Plan, step: Step, around: Mapping[tuple[int, str], Sequence[str]], later: bool) -> list[str]:
+    """Return why a step cannot come earlier (or later), one line for each step that it touches."""
+    numbers = {s.number for s in plan.steps if (s.number > step.number if later else s.number < step.number)}
+    told = list(_neighbour_lines(around, plan, numbers))
+    said = {number for number, _ in told}
+    linked = [s for s in plan.steps if (step.id in s.predecessors if later else s.id in step.predecessors)]
+    key = "explain.awaited" if later else "explain.waits"
+    for other in linked:
+        if other.number not in said:
+            told.append((other.number, say(plan.language, key, number=other.number, title=other.title)))
+    return [line for _, line in sorted(told)]
+
+
+def explanation(
+    graph: "nx.MultiGraph[str]",
+    plan: Plan,
+    mark: str,
+    schedule: Schedule | None = None,
+    locking: Sequence[LockingOrder] = (),
+) -> list[str]:
+    """Return why a part or beam comes when it does, one line each, in the plan's language.
+
+    ``graph`` is that of ``assembly.graph``. PlanError if no part has the mark, or no step handles it.
+    """
+    parts, language = _piece(graph, mark), plan.language
+    at, node = step_of_parts(plan, graph), graph.nodes[parts[0]]
+    made = next((step for step in plan.steps if parts[0] in step.marks), None)
+    step = at.get(parts[0])
+    if step is None:
+        raise PlanError(f"--explain {mark}: no step of the plan handles it; see the findings of the plan")
+    length = max(float(graph.nodes[part]["length_mm"]) for part in parts)
+    mass = sum(float(graph.nodes[part]["mass_kg"]) for part in parts)
+    lines = [say(language, "explain.part", mark=mark, kind=node["kind"], length=length, mass=mass)]
+    beam = node.get("beam", "")
+    if beam and beam != mark:
+        lines.append(say(language, "explain.of_beam", beam=beam))
+    if made is not None and made is not step:
+        lines.append(say(language, "explain.made", number=made.number, title=made.title, beam=beam))
+    lines.append(say(language, "explain.comes", number=step.number, title=step.title))
+    if step.phase == "slide":
+        lines.append(say(language, "explain.slid"))
+    around = _around(graph, parts, at) | _fastened(graph, parts, plan, step)
+    earlier = _reasons(plan, step, around, later=False)
+    lines += [say(language, "explain.before"), *(f"  {line}" for line in earlier)] if earlier else []
+    lines += [] if earlier else [say(language, "explain.first")]
+    later = _reasons(plan, step, around, later=True)
+    lines += [say(language, "explain.after"), *(f"  {line}" for line in later)] if later else []
+    lines += _locked(mark, locking, language)
+    if schedule is not None:
+        when = next(found for found in schedule.steps if found.id == step.id)
+        key = "explain.critical" if when.critical else "explain.slack"
+        lines.append(say(language, key, slack=when.slack))
+    return lines

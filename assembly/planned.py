@@ -1,0 +1,59 @@
+"""Everything that is planned for a gridshell: assembly with its schedule, locking order, segments, taking down."""
+
+from dataclasses import dataclass
+
+from aag_cad.design_making import Crew, Transport
+from aag_cad.parts.model import Gridshell
+from assembly.disassembly import disassembly_of
+from assembly.durations import step_minutes
+from assembly.language import Language
+from assembly.locking import LockingOrder, locking_orders
+from assembly.plan import plan_of
+from assembly.schedule import Schedule, schedule_of
+from assembly.segment_search import Limits
+from assembly.segments import Segmentation, segments
+from assembly.steps import Plan
+
+
+@dataclass(frozen=True)
+class Planned:
+    """What is planned for a gridshell: how it goes up, how its shells are locked and cut, how it comes down, when."""
+
+    plan: Plan
+    schedule: Schedule
+    locking: tuple[LockingOrder, ...]
+    segmentation: Segmentation
+    down: Plan
+    down_schedule: Schedule
+
+
+NO_LIMITS = Limits(*(4 * (float("inf"),)))
+
+
+def limits_of(transport: Transport) -> Limits:
+    """Return what a transport and the crane on site carry."""
+    return Limits(transport.length, transport.width, transport.height, transport.mass, transport.crane)
+
+
+def planned_of(
+    gridshell: Gridshell,
+    crew: Crew,
+    limits: Limits = NO_LIMITS,
+    language: Language = "en",
+    *,
+    edges_first: bool = True,
+) -> Planned:
+    """Return all plans for a gridshell, for a crew and what a transport carries, in a language.
+
+    ``edges_first``: edge planks before all geodesics, as in the paper, section 3.2; else they take their turn.
+    PlanError if the layers are woven so that no plank can be slid in, a part belongs to no joint, or a shell has no
+    geodesics; FrameError if a shell is a mechanism.
+    """
+
+    def scheduled(plan: Plan) -> Schedule:
+        return schedule_of(plan, step_minutes(plan, gridshell, crew.minutes), crew.people, crew.hours_per_day)
+
+    locking, found = locking_orders(gridshell, edges_first=edges_first), segments(gridshell, limits)
+    plan = plan_of(gridshell, crew.people, crew.lift_limit, locking=locking, segmentation=found, language=language)
+    down = disassembly_of(gridshell, crew.people, crew.lift_limit, language=language)
+    return Planned(plan, scheduled(plan), locking, found, down, scheduled(down))

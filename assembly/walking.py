@@ -1,0 +1,216 @@
+"""What is walked when a shell is laid out flat: from stacks beside the floor to the lines, and from stud to stud.
+
+The model of paper section 3.2: a crew carries each beam or geodesic from the stack of its family, 1 m beside the floor,
+to the middle of its line and walks back; studs are carried along, and reached one from the next. All points lie on the
+floor, (n, 2) mm.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TypeAlias
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import minimum_spanning_tree
+from scipy.spatial import Delaunay, KDTree
+
+from aag_cad.units import Floats
+
+Point: TypeAlias = tuple[float, float]
+
+STACK_MARGIN = 1000.0
+STACK_PACE = 1000.0
+# Coordinates are rounded to this many decimals of a mm, so that points that are level stay so on every machine.
+_DECIMALS = 3
+_ONE_LINE = 1e-9
+_ROW_HEIGHTS = (0.5, 3.5)
+
+
+@dataclass(frozen=True)
+class Line:
+    """Where a beam or geodesic lies on the floor: from start to end, and how long it is, mm."""
+
+    start: Point
+    end: Point
+    length: float
+
+    @property
+    def middle(self) -> Point:
+        """The point midway between its ends."""
+        return (self.start[0] + self.end[0]) / 2.0, (self.start[1] + self.end[1]) / 2.0
+
+    def before(self, end: str) -> Point:
+        """Return the middle of the piece when it lies in line, outside, before it is slid in at its ``end``."""
+        near, far = (self.start, self.end) if end == "start" else (self.end, self.start)
+        out = np.subtract(near, far)
+        long = float(np.hypot(*out)) or 1.0
+        x, y = (np.array(near) + out / long * self.length / 2.0).tolist()
+        return x, y
+
+
+def on_floor(points: Floats) -> Floats:
+    """Return points of the floor rounded to 1 um."""
+    return np.asarray(np.round(points, _DECIMALS))
+
+
+def best_plane(points: Floats) -> Floats:
+    """Return the axes of the plane nearest to points (n, 3): right, up and outward, (3, 3) with one axis a row.
+
+    The plane is level if that fits as well as any; up is then y, and else the vertical as seen in the plane.
+    """
+    centred = points - points.mean(axis=0) if len(points) else points
+    spread = centred.T @ centred
+    sizes, axes = np.linalg.eigh(spread)
+    level = spread[2, 2] - sizes[0] <= _ONE_LINE * sizes[2]
+    normal = np.array([0.0, 0.0, 1.0]) if level else axes[:, 0]
+    normal *= np.sign(next(part for part in normal[::-1] if abs(part) > _ONE_LINE))
+    upright = np.array([0.0, 1.0, 0.0]) if 1.0 - normal[2] ** 2 < _ONE_LINE else np.array([0.0, 0.0, 1.0])
+    up = upright - (upright @ normal) * normal
+    up /= np.linalg.norm(up)
+    return np.array([np.cross(up, normal), up, normal])
+
+
+def stack_places(points: Floats) -> Floats:
+    """Return the places for a stack (m, 2): at most 1 m apart round the rectangle of points, 1 m outside it."""
+    low, high = points.min(axis=0) - STACK_MARGIN, points.max(axis=0) + STACK_MARGIN
+    corners = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
+    sides = []
+    for a, b in zip(np.array(corners), np.roll(corners, -1, axis=0), strict=True):
+        count = int(np.ceil(np.abs(b - a).max() / STACK_PACE))
+        sides.append(a + (b - a) * (np.arange(count) / count)[:, None])
+    return on_floor(np.vstack(sides))
+
+
+def best_stack(places: Floats, calls: Floats) -> tuple[int, float]:
+    """Return which of the places (m, 2) lies nearest to all calls (k, 2), and the sum of its distances to them, mm.
+
+    A call is a way to the stack or from it. Of equal places the first one counts.
+    """
+    sums = [float(np.round(np.hypot(*(calls - place).T).sum(), _DECIMALS)) for place in places]
+    best = int(np.argmin(sums))
+    return best, sums[best]
+
+
+def sweep_order(lines: Mapping[str, Line]) -> tuple[str, ...]:
+    """Return lines of one run from side to side, across their mean direction, rightwards or else upwards."""
+    marks = sorted(lines)
+    ends = np.array([np.subtract(lines[mark].end, lines[mark].start) for mark in marks])
+    # Lines have no sense: doubled angles add up where the directions of opposite lines would cancel.
+    doubled = np.sum((ends[:, 0] + 1j * ends[:, 1]) ** 2) if marks else 0j
+    turn = np.angle(doubled) / 2.0
+    along = np.array([np.cos(turn), np.sin(turn)])
+    across = np.array([along[1], -along[0]])
+    across *= 1.0 if (round(across[0], 6), across[1]) > (0.0, 0.0) else -1.0
+    middles = np.array([lines[mark].middle for mark in marks]).reshape(-1, 2)
+    keys = np.round(np.column_stack([middles @ across, middles @ along]), 1).tolist()
+    return tuple(mark for _, mark in sorted(zip(keys, marks, strict=True)))
+
+
+def _crossed(stack: Floats, target: Floats, starts: Floats, ends: Floats) -> Floats:
+    """Return 1.0 for each line from starts to ends (n, 2) that the straight way from the stack to a target crosses."""
+
+    def side(a: Floats, b: Floats, c: Floats) -> Floats:
+        u, v = b - a, c - a
+        return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+
+    apart = side(stack, target, starts) * side(stack, target, ends) < 0.0
+    return np.asarray(apart & (side(starts, ends, stack) * side(starts, ends, target) < 0.0), dtype=np.float64)
+
+
+def stepped_over(order: Sequence[Line], stack: Point) -> tuple[int, int]:
+    """Return how many laid lines people step over on their ways to a run: laid in this order, and in the other."""
+    starts, ends = (np.array([getattr(line, end) for line in order]).reshape(-1, 2) for end in ("start", "end"))
+    forward = backward = 0.0
+    for i, line in enumerate(order):
+        crossed = _crossed(np.array(stack), np.array(line.middle), starts, ends)
+        forward += crossed[:i].sum()
+        backward += crossed[i + 1 :].sum()
+    return int(forward), int(backward)
+
+
+def path_length(points: Floats) -> float:
+    """Return the length of the path along points (n, 2) in their order, mm."""
+    return float(np.hypot(*np.diff(points, axis=0).T).sum()) if len(points) > 1 else 0.0
+
+
+def spanning_tree_length(points: Floats) -> float:
+    """Return the length of the minimum spanning tree of points (n, 2), mm: no path along them is shorter.
+
+    It lies on the edges of their Delaunay triangulation (Preparata and Shamos 1985, section 6.1).
+    """
+    points = np.unique(on_floor(points), axis=0)
+    if len(points) < 2:
+        return 0.0
+    centred = points - points.mean(axis=0)
+    _, sizes, axes = np.linalg.svd(centred, full_matrices=False)
+    if sizes.size < 2 or sizes[1] <= _ONE_LINE * sizes[0]:
+        return float(np.ptp(centred @ axes[0]))
+    corners = Delaunay(points).simplices
+    a, b = np.vstack([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]).T
+    pairs = np.unique(np.sort(np.column_stack([a, b]), axis=1), axis=0)
+    lengths = np.hypot(*(points[pairs[:, 0]] - points[pairs[:, 1]]).T)
+    graph = csr_array((lengths, (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points)))
+    return float(minimum_spanning_tree(graph).sum())
+
+
+def _bands(values: Floats, others: Floats, height: float) -> tuple[tuple[int, ...], ...]:
+    """Return indices in bands of at most a height by rising values, each band sorted by the others."""
+    order = np.lexsort((others, values))
+    bands: list[list[int]] = []
+    for i in order.tolist():
+        if bands and values[i] - values[bands[-1][0]] <= height:
+            bands[-1].append(i)
+        else:
+            bands.append([i])
+    return tuple(tuple(sorted(band, key=lambda i: (others[i], i))) for band in bands)
+
+
+def alternated(rows: Sequence[Sequence[int]], points: Floats) -> tuple[tuple[int, ...], ...]:
+    """Return whole rows in their order, each forwards or backwards so that the path along all of them is shortest.
+
+    The first row stays as it is if that is no longer. Exact: the best way up to each end of each row is kept.
+    """
+    if not rows:
+        return ()
+
+    def step(a: int, b: int) -> float:
+        return float(np.hypot(*(points[a] - points[b])))
+
+    ways = (tuple(rows[0]), tuple(rows[0][::-1]))
+    costs, before = [0.0, 0.0], list[tuple[int, int]]()
+    for row, above in pairwise(rows):
+        leave, enter = (row[-1], row[0]), (above[0], above[-1])
+        totals = [[costs[i] + step(leave[i], enter[j]) for i in (0, 1)] for j in (0, 1)]
+        # A way that is not shorter by 1 um is no better: rounding must not turn the rows.
+        chosen = [int(total[1] < total[0] - 1e-3) for total in totals]
+        before.append((chosen[0], chosen[1]))
+        costs = [totals[0][chosen[0]], totals[1][chosen[1]]]
+    way = int(costs[1] < costs[0] - 1e-3)
+    found = []
+    for k in range(len(rows) - 1, -1, -1):
+        ways = (tuple(rows[k]), tuple(rows[k][::-1]))
+        found.append(ways[way])
+        way = before[k - 1][way] if k else way
+    return tuple(found[::-1])
+
+
+def serpentine(points: Floats) -> tuple[tuple[int, ...], ...]:
+    """Return points (n, 2) in rows or in columns, walked to and fro: the shortest of four such ways.
+
+    Rows and columns are as high as half the usual distance from a point to its nearest, which keeps the rows of a
+    regular pattern apart, or seven times that, which suits scattered points better (strips of width 1.7 over the root
+    of their density: Daganzo 1984).
+    """
+    if len(points) < 2:
+        return tuple((i,) for i in range(len(points)))
+    spacing = float(np.median(np.asarray(KDTree(points).query(points, k=2)[0])[:, 1])) or 1.0
+    best: tuple[float, tuple[tuple[int, ...], ...]] | None = None
+    for share in _ROW_HEIGHTS:
+        for axis in (1, 0):
+            rows = alternated(_bands(points[:, axis], points[:, 1 - axis], share * spacing), points)
+            long = path_length(points[[i for row in rows for i in row]])
+            if best is None or long < best[0] - 1e-3:
+                best = long, rows
+    assert best is not None
+    return best[1]
