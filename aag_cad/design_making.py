@@ -150,6 +150,9 @@ class Transport(Section):
     width: Positive
     height: Positive
     mass: Positive
+    shells: Annotated[bool, Field(strict=True)] = Field(
+        True, description="false: shells are put together where they stand, and only planks travel"
+    )
     crane: Positive | None = Field(None, description="kg that the crane lifts as far out as the shells stand")
 
 

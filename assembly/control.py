@@ -1,5 +1,6 @@
-"""The figures that tell whether a shell has its shape, and where to sling it."""
+"""The figures that tell whether a shell has its shape, and where to sling and to prop it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,8 @@ _PAIRS = (
     ("P4", "P5"),
 )
 _SLINGS = ((-0.5, -0.4), (0.5, -0.4), (-0.5, 0.4), (0.5, 0.4))
+_MIDDLE = ((-0.5, 0.0), (0.5, 0.0), (0.0, 0.0))
+_TOP = ((-0.6, 0.8), (0.6, 0.8), (0.0, 1.0))
 
 
 @dataclass(frozen=True)
@@ -71,15 +74,37 @@ def _reach(place: Floats, corner: tuple[float, float]) -> float:
     return float(place @ np.array(corner)) - (abs(float(place[0])) if corner[0] == 0.0 else 0.0)
 
 
-def sling_points(shell: Shell) -> tuple[str, ...]:
-    """Return four studs about the middle of a shell to sling it by, fewer if it has fewer studs."""
+def _nearest(shell: Shell, places: Sequence[tuple[float, float]], taken: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return a stud for each place of the view square on, fewer if the shell has fewer studs that are not taken."""
     studs, flat = _seen(shell)
     chosen: list[str] = []
-    for place in _SLINGS:
-        left = [i for i, stud in enumerate(studs) if stud.mark not in chosen]
+    for place in places:
+        left = [i for i, stud in enumerate(studs) if stud.mark not in (*chosen, *taken)]
         if left:
             nearest = min(
                 left, key=lambda i: (round(float(np.linalg.norm(flat[i] - np.array(place))), 6), studs[i].mark)
             )
             chosen.append(studs[nearest].mark)
     return tuple(chosen)
+
+
+def sling_points(shell: Shell) -> tuple[str, ...]:
+    """Return four studs about the middle of a shell to sling it by, fewer if it has fewer studs."""
+    return _nearest(shell, _SLINGS)
+
+
+def prop_points(shell: Shell) -> tuple[str, ...]:
+    """Return the joints to prop a stiff shell at while nothing else but its feet holds it.
+
+    Along each upper edge every second block of a beam, from the crown down; and three studs across the middle. Without
+    upper edges three studs at the top stand for these.
+    """
+    footed = {mark for joint in shell.joints if joint.kind == "foot" for mark in joint.members}
+    edges = [plank.mark for plank in shell.planks if plank.family == "E" and plank.mark not in footed]
+    found: list[str] = []
+    for edge in edges:
+        joints = [joint for joint in shell.joints if joint.kind == "boundary" and edge in joint.members]
+        joints.sort(key=lambda joint: (-round(joint.point[2], 6), joint.mark))
+        found += [joint.mark for joint in joints[::2]]
+    top = () if found else _nearest(shell, _TOP)
+    return (*dict.fromkeys(found), *top, *_nearest(shell, _MIDDLE, (*sling_points(shell), *top)))

@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain, groupby
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.parts.model import Bolt, Gridshell, Rod, Shell, Timber
 from aag_cad.units import MM_PER_M
+from assembly.control import prop_points
 from assembly.crew import Crew, crew_of, hands_for
 from assembly.flat import flat_order, groups_of
 from assembly.kit import Kit, shell_kit
@@ -27,6 +28,10 @@ _GRAVITY = 9.81
 # Shells that these steps work on stay where they are.
 _STAYING: tuple[DownPhase, ...] = ("prop", "open ridges")
 _EACH_HELD: tuple[DownPhase, ...] = ("prop", "lift off", "hang", "lower")
+# A shell stands on props in these: its neighbours or its planks let go. In the first they are set.
+_PROPPED: tuple[DownPhase, ...] = (
+    "prop", "open ridges", "lift off", "hang", "release geodesics", "pull edge planks", "lower",
+)  # fmt: skip
 # Their tools lift already.
 _LIFTED_BY_GEAR: tuple[DownPhase, ...] = ("lift off", "clear feet", "hang", "lower")
 
@@ -212,15 +217,16 @@ def _words(
 def _step(
     task: _Task,
     number: int,
-    last: bool,
     words: Wording,
     crew: Crew,
     weights: Mapping[str, tuple[float, float]],
+    props: Mapping[str, tuple[str, ...]],
     language: Language,
 ) -> Step:
-    """Return the step of a task, with the hands for its heaviest and longest piece."""
+    """Return the step of a task, with the hands for its heaviest and longest piece; ``props`` by shell."""
     pieces = [weights[mark] for mark in (*task.marks, *(() if task.phase in _STAYING else task.assemblies))]
     hands = hands_for(crew, max((m for m, _ in pieces), default=0.0), max((n for _, n in pieces), default=0.0))
+    held = (task.shell,) if task.shell else task.assemblies
     gear = hands.gear and task.least_crew <= crew.people and task.phase not in _LIFTED_BY_GEAR
     return Step(
         number=number,
@@ -234,7 +240,8 @@ def _step(
         crew=max(hands.people, min(task.least_crew, crew.people)),
         predecessors=task.after,
         instructions=words.instructions,
-        hold=words.hold if last else "",
+        hold=words.hold,
+        props=_flat(props[mark] for mark in held) if task.phase in _PROPPED else (),
     )
 
 
@@ -250,6 +257,7 @@ def disassembly_of(gridshell: Gridshell, people: int, lift_limit: float, *, lang
     """
     crew, weights = crew_of(people, lift_limit), piece_weights(gridshell)
     kits = {shell.mark: shell_kit(shell) for shell in gridshell.shells}
+    props = {shell.mark: prop_points(shell) for shell in gridshell.shells}
     chapters = [list(_site_tasks(gridshell, kits))]
     hoists: tuple[str, ...] = ()
     for shell in gridshell.shells:
@@ -262,5 +270,6 @@ def disassembly_of(gridshell: Gridshell, people: int, lift_limit: float, *, lang
         for i, task in enumerate(tasks):
             last = task.phase in _EACH_HELD or all(later.phase != task.phase for later in tasks[i + 1 :])
             words = _words(gridshell, task, weights, language)
-            steps.append(_step(task, len(steps) + 1, last, words, crew, weights, language))
+            words = words if last else replace(words, hold="")
+            steps.append(_step(task, len(steps) + 1, words, crew, weights, props, language))
     return Plan(gridshell.name, tuple(steps), language)

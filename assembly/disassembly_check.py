@@ -9,12 +9,16 @@ import networkx as nx
 import numpy as np
 
 from aag_cad.parts.model import Bolt, Gridshell, Joint, Part, Shell, all_joints, all_parts
+from aag_cad.units import Floats
 from assembly.check import numbering_problems
 from assembly.steps import Plan, Step
 
 # A place in the plan: the step, and the turn in it. A rule: why, what comes first, what then.
 _Place: TypeAlias = tuple[str, int]
 _Rule: TypeAlias = tuple[str, _Place, _Place]
+
+_LETTING_GO = ("open ridges", "lift off", "hang", "release geodesics", "pull edge planks", "lower")
+_LEAST_SUPPORTS = 3
 
 
 def _forced(plan: Plan) -> dict[str, set[str]]:
@@ -174,6 +178,26 @@ def _one_by_one(plan: Plan, forced: dict[str, set[str]]) -> Iterator[str]:
             yield f"{a} and {b}: nothing forces one to be lowered before the other hangs, but the hoists serve one"
 
 
+def _surrounded(corners: Floats, point: Floats) -> bool:
+    """Return whether a point (2,) lies in the convex hull of others (n, 2): these leave no half of its view free."""
+    angles = np.sort(np.arctan2(*(corners - point).T[::-1]))
+    gaps = np.diff(angles, append=angles[:1] + 2.0 * np.pi)
+    return bool(len(angles) >= _LEAST_SUPPORTS and gaps.max() < np.pi)
+
+
+def _propped(plan: Plan, shell: Shell) -> Iterator[str]:
+    """Yield the steps that let go of what holds a shell while its centre of gravity is not over its feet and props."""
+    places = {joint.mark: joint.point for joint in shell.joints}
+    feet = {joint.mark for joint in shell.joints if joint.kind == "foot"}
+    lengths = np.array([plank.curve.length for plank in shell.planks])
+    middles = np.array([plank.curve.points.mean(axis=0) for plank in shell.planks])
+    centre = lengths @ middles / lengths.sum()
+    for step in (step for phase in _LETTING_GO for step in _steps(plan, phase, shell.mark)):
+        under = feet | {mark for mark in step.props if mark in places}
+        if not _surrounded(np.array([places[mark] for mark in sorted(under)])[:, :2], centre[:2]):
+            yield f"{shell.mark}: step {step.id} lets go of it, but its centre is not over its feet and props"
+
+
 def _measured(plan: Plan, leaves: dict[str, _Place]) -> Iterator[_Rule]:
     for step in _steps(plan, "passports"):
         yield from ((f"{mark} is measured", leaves[mark], (step.id, 0)) for mark in step.assemblies if mark in leaves)
@@ -184,7 +208,8 @@ def check_disassembly(plan: Plan, gridshell: Gridshell) -> list[str]:
 
     Every part leaves exactly once; nothing is taken from under what lies on it or before its fasteners are out; what
     holds a shell (cover off, ridges, foot bolts, screws, edge planks, studs) goes only when props, slings or the floor
-    hold it instead, forced by predecessors; one shell hangs at a time; every plank is measured after it has left.
+    hold it instead, forced by predecessors, and these stand so that the shell cannot tip; one shell hangs at a time;
+    every plank is measured after it has left.
     """
     leaves, lying = _places(plan, gridshell)
     forced = _forced(plan)
@@ -192,6 +217,7 @@ def check_disassembly(plan: Plan, gridshell: Gridshell) -> list[str]:
     rules = [*_fastened(gridshell, leaves, lying), *_covered(gridshell, lying), *_measured(plan, leaves)]
     for shell in gridshell.shells:
         rules += [*_standing(plan, shell, leaves), *_hanging(plan, shell, leaves)]
+        problems += _propped(plan, shell)
     for reason, (first, turn), (then, later) in rules:
         if first == then and turn > later:
             problems.append(f"{reason}, but comes later in step {first}")

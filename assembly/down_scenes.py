@@ -116,10 +116,10 @@ def down_pictures(
         case "hang" | "lower":
             return large, elevation_svg(shell, sling_points(shell), flat=step.phase == "lower")
         case "lift off":
-            return (large, *foot_sections(shell, _SHOE_SECTIONS))
+            return (large, *foot_sections(shell, sheets.language, _SHOE_SECTIONS))
         case "pull edge planks":
             straps = [strap for strap in shell.straps if strap.mark in step.marks]
-            return (large, *(strap_section_svg(shell, strap) for strap in middle_of(straps)))
+            return (large, *(strap_section_svg(shell, strap, language=sheets.language) for strap in middle_of(straps)))
         case _:
             return (large,)
 

@@ -12,6 +12,7 @@ from aag_cad.units import Floats
 FONT = "DejaVu Sans Mono"
 CHARACTER = 0.602
 _CAPITAL = 0.73
+_SAME_AREA = 1e-6
 
 Box: TypeAlias = tuple[float, float, float, float]
 
@@ -103,10 +104,11 @@ def label_box(label: Label) -> Box:
     return label.x - half, label.y - 0.62 * label.size, label.x + half, label.y + 0.62 * label.size
 
 
-def _overlap(a: Box, b: Box) -> float:
-    wide = min(a[2], b[2]) - max(a[0], b[0])
-    high = min(a[3], b[3]) - max(a[1], b[1])
-    return wide * high if wide > 0.0 and high > 0.0 else 0.0
+def _overlaps(boxes: Floats, others: Floats) -> Floats:
+    """Return the areas (n, m) that boxes (n, 4) share with others (m, 4)."""
+    wide = np.minimum(boxes[:, None, 2], others[:, 2]) - np.maximum(boxes[:, None, 0], others[:, 0])
+    high = np.minimum(boxes[:, None, 3], others[:, 3]) - np.maximum(boxes[:, None, 1], others[:, 1])
+    return np.asarray(np.clip(wide, 0.0, None) * np.clip(high, 0.0, None))
 
 
 def placed_labels(
@@ -116,19 +118,21 @@ def placed_labels(
 
     Earlier places are better where the cover is equal; what would stick out of the ``sheet`` counts as covered.
     """
-    boxes, labels = list(taken), []
+    held = len(taken)
+    boxes = np.zeros((held + len(wanted), 4))
+    boxes[:held] = np.array(taken, dtype=float).reshape(held, 4)
+    page = np.array([sheet])
+    labels: list[Label] = []
     for content, places in wanted:
-        best, least = Label(content, float(places[0][0]), float(places[0][1]), size), np.inf
-        for x, y in places.tolist():
-            label = Label(content, x, y, size)
-            box = label_box(label)
-            inside = _overlap(box, sheet)
-            outside = (box[2] - box[0]) * (box[3] - box[1]) - inside
-            cover = sum(_overlap(box, other) for other in boxes) + 10.0 * outside
-            if cover < least - 1e-6:
-                best, least = label, cover
-        labels.append(best)
-        boxes.append(label_box(best))
+        tried = [Label(content, x, y, size) for x, y in places.tolist()]
+        found = np.array([label_box(label) for label in tried])
+        areas = (found[:, 2] - found[:, 0]) * (found[:, 3] - found[:, 1])
+        covers = _overlaps(found, boxes[: held + len(labels)]).sum(axis=1) + 10.0 * (areas - _overlaps(found, page)[:, 0])
+        best = 0
+        for i, cover in enumerate(covers.tolist()):
+            best = i if cover < covers[best] - _SAME_AREA else best
+        boxes[held + len(labels)] = found[best]
+        labels.append(tried[best])
     return tuple(labels)
 
 

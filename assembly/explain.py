@@ -7,13 +7,15 @@ import networkx as nx
 
 from assembly.errors import PlanError
 from assembly.graph import joint_of
-from assembly.language import Language, say
+from assembly.language import Language, say, words_table
 from assembly.locking import LockingOrder, frequency
 from assembly.ranges import joined_ranges
 from assembly.schedule import Schedule
 from assembly.steps import Plan, Step
 
 _MOST_SHOWN = 8
+# What a step may have to do with a part; the first that holds is said.
+_RELATIONS = ("under", "over", "joined", "fastened")
 
 
 def step_of_parts(plan: Plan, graph: "nx.MultiGraph[str]") -> dict[str, Step]:
@@ -87,28 +89,32 @@ def _locked(mark: str, orders: Sequence[LockingOrder], language: Language) -> It
                 )  # fmt: skip
 
 
-def _neighbour_lines(
-    around: Mapping[tuple[int, str], Sequence[str]], plan: Plan, numbers: set[int]
-) -> Iterator[tuple[int, str]]:
-    """Yield (number of step, line) for what meets a part and comes in some steps."""
-    for (number, relation), marks in sorted(around.items()):
-        if number in numbers:
-            shown = joined_ranges(marks) if len(marks) <= _MOST_SHOWN else f"{joined_ranges(marks[:_MOST_SHOWN])} …"
-            title = plan.steps[number - 1].title
-            yield number, say(plan.language, f"explain.{relation}", number=number, title=title, marks=shown)
+def _line(plan: Plan, step: Step, around: Mapping[tuple[int, str], Sequence[str]], otherwise: str) -> str:
+    """Return the line about a step: the first relation that it has to a part, else that one waits for the other."""
+    for relation in _RELATIONS:
+        marks = around.get((step.number, relation), ())
+        if marks:
+            more = " …" if len(marks) > _MOST_SHOWN else ""
+            shown = f"{joined_ranges(marks[:_MOST_SHOWN])}{more}"
+            return say(plan.language, f"explain.{relation}", number=step.number, title=step.title, marks=shown)
+    return say(plan.language, f"explain.{otherwise}", number=step.number, title=step.title)
 
 
 def _reasons(plan: Plan, step: Step, around: Mapping[tuple[int, str], Sequence[str]], later: bool) -> list[str]:
     """Return why a step cannot come earlier (or later), one line for each step that it touches."""
-    numbers = {s.number for s in plan.steps if (s.number > step.number if later else s.number < step.number)}
-    told = list(_neighbour_lines(around, plan, numbers))
-    said = {number for number, _ in told}
-    linked = [s for s in plan.steps if (step.id in s.predecessors if later else s.id in step.predecessors)]
-    key = "explain.awaited" if later else "explain.waits"
-    for other in linked:
-        if other.number not in said:
-            told.append((other.number, say(plan.language, key, number=other.number, title=other.title)))
-    return [line for _, line in sorted(told)]
+    touched = {number for number, relation in around if later or relation != "fastened"}
+    found = []
+    for other in plan.steps:
+        if other.number > step.number if later else other.number < step.number:
+            linked = step.id in other.predecessors if later else other.id in step.predecessors
+            if linked or other.number in touched:
+                found.append(_line(plan, other, around, "awaited" if later else "waits"))
+    return found
+
+
+def _kind(kind: str, language: Language) -> str:
+    """Return the word for a kind of part; a kind that the tables do not know stands as it is."""
+    return say(language, f"explain.kinds.{kind}") if kind in words_table("explain")["kinds"] else kind
 
 
 def explanation(
@@ -130,7 +136,7 @@ def explanation(
         raise PlanError(f"--explain {mark}: no step of the plan handles it; see the findings of the plan")
     length = max(float(graph.nodes[part]["length_mm"]) for part in parts)
     mass = sum(float(graph.nodes[part]["mass_kg"]) for part in parts)
-    lines = [say(language, "explain.part", mark=mark, kind=node["kind"], length=length, mass=mass)]
+    lines = [say(language, "explain.part", mark=mark, kind=_kind(str(node["kind"]), language), length=length, mass=mass)]
     beam = node.get("beam", "")
     if beam and beam != mark:
         lines.append(say(language, "explain.of_beam", beam=beam))

@@ -4,21 +4,22 @@ It takes the fewest walked metres (``assembly.walking``) and handles each long p
 """
 
 from collections import defaultdict
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby, pairwise
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar
 
 import networkx as nx
 import numpy as np
 
 from aag_cad.parts.model import Shell, Stud
-from aag_cad.units import MM_PER_M, Floats
+from aag_cad.units import MM_PER_M, Floats, Vector
 from assembly.crew import LONG_PIECE
 from assembly.errors import PlanError
 from assembly.footpath import shorter_path
-from assembly.interlacing import Slide
+from assembly.interlacing import Interlacing, Slide
 from assembly.layers import layer_precedence, lying_unit
+from assembly.laying_units import Unit, units_of
 from assembly.view import shell_view, sweep_direction
 from assembly.walking import (
     Line,
@@ -34,9 +35,6 @@ from assembly.walking import (
     stepped_over,
     sweep_order,
 )
-
-if TYPE_CHECKING:
-    from assembly.interlacing import Interlacing
 
 _T = TypeVar("_T")
 # Shell, layer, family: what lies on one stack, and is laid in one run where nothing of it waits for something else.
@@ -101,25 +99,41 @@ def row_groups(rows: Sequence[tuple[str, ...]], most: int) -> tuple[tuple[tuple[
 
 
 def stud_rows(shell: Shell) -> tuple[tuple[str, ...], ...]:
-    """Return the studs in rows of like height, from the foot up, every other row along the sweep and back again.
+    """Return the studs in level rows, from the foot up, each row along the sweep.
 
-    A new row begins where the next higher stud stands more than the width of a stud above the last one; rows turn where
-    that makes the path along all of them shorter.
+    A new row begins where the next higher stud stands more than the width of a stud above the last one.
     """
-    direction, axes = sweep_direction(shell), shell_view(shell).axes[:2]
+    direction = sweep_direction(shell)
     rows: list[list[Stud]] = []
     for stud in sorted(shell.studs, key=lambda stud: (stud.frame.origin[2], stud.mark)):
         if rows and stud.frame.origin[2] - rows[-1][-1].frame.origin[2] <= stud.across_flats:
             rows[-1].append(stud)
         else:
             rows.append([stud])
-    for row in rows:
-        row.sort(key=lambda stud: (float(np.array(stud.frame.origin) @ direction), stud.mark))
-    studs = [stud for row in rows for stud in row]
-    points = on_floor(np.array([stud.frame.origin for stud in studs]).reshape(-1, 3) @ axes.T)
-    numbers = iter(range(len(studs)))
-    numbered = [[next(numbers) for _ in row] for row in rows]
-    return tuple(tuple(studs[i].mark for i in row) for row in alternated(numbered, points))
+    along = {stud.mark: float(np.array(stud.frame.origin) @ direction) for stud in shell.studs}
+    return tuple(tuple(sorted((stud.mark for stud in row), key=lambda mark: (along[mark], mark))) for row in rows)
+
+
+def courses(rows: Sequence[Sequence[str]], places: Mapping[str, Point]) -> tuple[tuple[str, ...], ...]:
+    """Return level rows as they are walked to and fro: one by one, or two by two in zigzag where that is shorter.
+
+    The rows of a rhombic grid lie so close that two of them are reached from one way between them.
+    """
+    marks = [mark for row in rows for mark in row]
+    number = {mark: i for i, mark in enumerate(marks)}
+    points = np.array([places[mark] for mark in marks]).reshape(-1, 2)
+    if len(rows) < 2:
+        return tuple(tuple(row) for row in rows)
+    across = points[number[rows[0][-1]]] - points[number[rows[0][0]]]
+    if not across.any():
+        across = np.array([1.0, 0.0])
+    along = points @ across
+    found = []
+    for count in (1, 2):
+        merged = [[number[mark] for row in rows[i : i + count] for mark in row] for i in range(0, len(rows), count)]
+        ways = alternated([sorted(row, key=lambda i: (along[i], i)) for row in merged], points)
+        found.append((round(path_length(points[[i for row in ways for i in row]])), ways))
+    return tuple(tuple(marks[i] for i in row) for row in min(found, key=lambda each: each[0])[1])
 
 
 def walking_rows(places: Mapping[str, Point]) -> tuple[tuple[str, ...], ...]:
@@ -138,37 +152,29 @@ def walking_rows(places: Mapping[str, Point]) -> tuple[tuple[str, ...], ...]:
     return tuple(tuple(marks[i] for i in row) for row in rows)
 
 
-def _runs(
-    precedence: "nx.DiGraph[str]", sorts: Mapping[str, _Sort], slid: Collection[str]
-) -> tuple[tuple[tuple[str, ...], ...], tuple[str, ...]]:
-    """Return runs of units that wait for nothing but earlier runs, each of one sort, and the slid units in order.
+def _runs(precedence: "nx.DiGraph[str]", sorts: Mapping[str, _Sort]) -> tuple[tuple[str, ...], ...]:
+    """Return runs of units of one sort that wait for nothing but earlier runs: the first sort that can be laid, whole.
 
-    Of the sorts with units that can be laid, the first is next, with all of them.
+    PlanError with the units that wait for each other in a circle.
     """
     waiting = {unit: sum(before in sorts for before in precedence.predecessors(unit)) for unit in sorts}
     free: dict[_Sort, list[str]] = defaultdict(list)
-    for unit in sorted(unit for unit in sorts if not waiting[unit]):
+    for unit in (unit for unit in sorts if not waiting[unit]):
         free[sorts[unit]].append(unit)
     runs: list[tuple[str, ...]] = []
-    order: list[str] = []
     while free:
-        # A slid unit is no reason to leave off laying.
-        sort = min(free, key=lambda sort: (all(unit in slid for unit in free[sort]), sort))
-        units = tuple(sorted(free.pop(sort)))
-        runs.append(tuple(unit for unit in units if unit not in slid))
-        order += (unit for unit in units if unit in slid)
-        for unit in units:
-            for after in precedence.successors(unit):
-                if after in sorts:
-                    waiting[after] -= 1
-                    if not waiting[after]:
-                        free[sorts[after]].append(after)
+        units = tuple(sorted(free.pop(min(free))))
+        runs.append(units)
+        for after in (after for unit in units for after in precedence.successors(unit) if after in sorts):
+            waiting[after] -= 1
+            if not waiting[after]:
+                free[sorts[after]].append(after)
     if left := sorted(unit for unit, count in waiting.items() if count):
         raise PlanError(
             f"{', '.join(left[:5])}: {len(left)} pieces lie on each other in a circle, allowed 0: none of them can be "
             "laid first; give the interlacing, which says what is slid in and what is left out"
         )
-    return tuple(run for run in runs if run), tuple(order)
+    return tuple(runs)
 
 
 def _stacks(
@@ -202,32 +208,33 @@ def _floor_order(
     studs: Mapping[str, Point],
 ) -> FlatOrder:
     """Return the order on one floor."""
-    runs, slid = _runs(precedence, sorts, {slide.unit for slide in slides})
-    by_unit = {slide.unit: slide for slide in slides}
+    slid = {slide.unit for slide in slides}
+    runs = _runs(precedence, {unit: sort for unit, sort in sorts.items() if unit not in slid})
     names = {sort: "-".join(part for part in (sort[0], sort[2]) if part) for sort in set(sorts.values())}
     stacks, carried = _stacks(lines, sorts, slides, names)
     laid, stepped = [], 0
     for run in runs:
         order = sweep_order({unit: lines[unit] for unit in run})
         forward, backward = stepped_over([lines[unit] for unit in order], stacks[names[sorts[run[0]]]])
-        laid.append(order if forward <= backward else order[::-1])
+        falling = order[0] > order[-1]
+        laid.append(order if (forward, falling) <= (backward, not falling) else order[::-1])
         stepped += min(forward, backward)
     points = on_floor(np.array([studs[stud] for row in rows for stud in row]).reshape(-1, 2))
     return FlatOrder(
         runs=tuple(laid),
         rows=rows,
-        slides=tuple(by_unit[unit] for unit in slid),
+        slides=tuple(slides),
         stacks=stacks,
         carried_m=carried,
         path_m=path_length(points) / MM_PER_M,
         tree_m=spanning_tree_length(points) / MM_PER_M,
         stepped_over=stepped,
-        handlings=sum((line.length > LONG_PIECE) * (1 + (unit in by_unit)) for unit, line in lines.items()),
+        handlings=sum((line.length > LONG_PIECE) * (1 + (unit in slid)) for unit, line in lines.items()),
     )
 
 
 def flat_order(shell: Shell) -> FlatOrder:
-    """Return the order of laying a shell flat (paper section 3.2), its studs in whole rows from the foot up.
+    """Return the order of laying a shell flat (paper section 3.2), its studs in whole ``courses`` from the foot up.
 
     The floor is the shell seen square on. PlanError if the layers are woven so that no order exists.
     """
@@ -242,61 +249,58 @@ def flat_order(shell: Shell) -> FlatOrder:
         lengths[unit] = max(lengths[unit], long)
     lines = {unit: _line(on_floor(np.mean(found, axis=0)), lengths[unit]) for unit, found in ends.items()}
     studs = {stud.mark: _point(on_floor(np.array(stud.frame.origin) @ axes.T)) for stud in shell.studs}
-    return _floor_order(lines, sorts, layer_precedence(shell), (), stud_rows(shell), studs)
+    return _floor_order(lines, sorts, layer_precedence(shell), (), courses(stud_rows(shell), studs), studs)
 
 
-def _graph_floor(
-    graph: "nx.MultiGraph[str]", members: Mapping[str, Sequence[str]], studs: Sequence[str]
-) -> tuple[dict[str, Line], dict[str, Point]]:
-    """Return the lines of units (of the planks ``members``) and the places of studs on the floor nearest to both."""
-    nodes: Mapping[str, Mapping[str, Any]] = graph.nodes
-    planks = [plank for listed in members.values() for plank in listed]
-    points = [nodes[plank][end] for plank in planks for end in ("start", "end")]
-    points += [nodes[mark]["position"] for mark in (*planks, *studs)]
-    axes = best_plane(np.array(points, dtype=np.float64).reshape(-1, 3))[:2]
-    lines = {}
-    for unit, listed in members.items():
-        ends = np.mean([[nodes[plank]["start"], nodes[plank]["end"]] for plank in listed], axis=0)
-        lines[unit] = _line(on_floor(ends @ axes.T), max(nodes[plank]["length_mm"] for plank in listed))
-    places = on_floor(np.array([nodes[stud]["position"] for stud in studs]).reshape(-1, 3) @ axes.T)
-    return lines, {stud: _point(place) for stud, place in zip(studs, places, strict=True)}
+def _places(graph: "nx.MultiGraph[str]", studs: Sequence[str], units: Mapping[str, Unit]) -> dict[str, Vector]:
+    """Return the position of each stud: its own, else the mean of the middles of the planks that it is tied to."""
+    home = {part: unit.mark for unit in units.values() for part in unit.parts}
+    found = {}
+    for stud in studs:
+        position = graph.nodes[stud].get("position")
+        if position is None:
+            tied = [units[unit] for unit in sorted({home[part] for part in graph[stud] if part in home})]
+            ends = [point for unit in tied for point in (unit.start, unit.end)] or [(0.0, 0.0, 0.0)]
+            position = np.mean(ends, axis=0).tolist()
+        found[stud] = (position[0], position[1], position[2])
+    return found
 
 
-def units_of(graph: "nx.MultiGraph[str]") -> dict[str, tuple[str, ...]]:
-    """Return the planks of each unit that is laid as one piece, a coupled beam or a plank, by its mark; sorted."""
-    nodes: Mapping[str, Mapping[str, Any]] = graph.nodes
-    found: dict[str, list[str]] = defaultdict(list)
-    for mark in sorted(mark for mark in graph if "start" in nodes[mark]):
-        found[nodes[mark]["beam"] or mark].append(mark)
-    return {unit: tuple(found[unit]) for unit in sorted(found)}
+def graph_floor(units: Iterable[Unit]) -> Floats:
+    """Return the axes of the floor on which units lie: the plane nearest to their ends, (2, 3) with one axis a row."""
+    return best_plane(np.array([(unit.start, unit.end) for unit in units], dtype=np.float64).reshape(-1, 3))[:2]
 
 
 def flat_order_of(
-    graph: "nx.MultiGraph[str]", interlacing: "Interlacing", later: Collection[str] | None = None
+    graph: "nx.MultiGraph[str]", interlacing: Interlacing, later: Collection[str] | None = None
 ) -> FlatOrder:
     """Return the order of laying the shells of a graph (``assembly.graph``) flat, one after the other.
 
     The floor of each shell is the plane nearest to it. ``later`` are units that are not laid: edge planks (family E)
     if it is None; neither are those that the interlacing leaves out. PlanError if its precedence runs in a circle.
     """
-    nodes: Mapping[str, Mapping[str, Any]] = graph.nodes
-    shells: dict[str, dict[str, tuple[str, ...]]] = defaultdict(dict)
-    sorts: dict[str, _Sort] = {}
-    for unit, planks in units_of(graph).items():
-        node = nodes[planks[0]]
-        gone = node["family"] == EDGE_FAMILY if later is None else unit in later
-        if not gone and unit not in interlacing.left_out:
-            shells[node["shell"]][unit] = planks
-            sorts[unit] = (node["shell"], node["layer"] or 0, node["family"])
+    units = units_of(graph)
+    shells: dict[str, list[Unit]] = defaultdict(list)
+    for unit in units.values():
+        gone = unit.family == EDGE_FAMILY if later is None else unit.mark in later
+        if not gone and unit.mark not in interlacing.left_out:
+            shells[unit.shell].append(unit)
     studs: dict[str, list[str]] = defaultdict(list)
-    for mark in sorted(mark for mark in graph if nodes[mark]["kind"] == STUD_KIND):
-        studs[nodes[mark]["shell"]].append(mark)
+    for mark in sorted(mark for mark in graph if graph.nodes[mark]["kind"] == STUD_KIND):
+        studs[graph.nodes[mark].get("shell", "")].append(mark)
     orders = []
     for shell in sorted({*shells, *studs}):
-        lines, places = _graph_floor(graph, shells[shell], studs[shell])
-        here = {unit: sorts[unit] for unit in lines}
+        axes = graph_floor(shells[shell])
+        lines = {
+            unit.mark: _line(on_floor(np.array([unit.start, unit.end]) @ axes.T), unit.length) for unit in shells[shell]
+        }
+        sorts: dict[str, _Sort] = {unit.mark: (shell, unit.layer or 0, unit.family) for unit in shells[shell]}
+        places = {
+            stud: _point(on_floor(axes @ np.array(position)))
+            for stud, position in _places(graph, studs[shell], units).items()
+        }
         slides = [slide for slide in interlacing.slides if slide.unit in lines]
-        orders.append(_floor_order(lines, here, interlacing.precedence, slides, walking_rows(places), places))
+        orders.append(_floor_order(lines, sorts, interlacing.precedence, slides, walking_rows(places), places))
     return FlatOrder(
         runs=tuple(run for order in orders for run in order.runs),
         rows=tuple(row for order in orders for row in order.rows),

@@ -167,9 +167,10 @@ def _neighbours(chain: Chain, place: int) -> tuple[int, int]:
     return int(chain.points[max(place - 1, 0)]), int(chain.points[min(place + 1, last)])
 
 
-def _scissor(joint: Joint, lower: Chain, upper: Chain, beams: dict[str, Beam]) -> Scissor:
-    angles, normal = [], np.array(joint.normal)
-    first = np.zeros(3)
+def _scissor(joint: Joint, below: str, above: str, chains: dict[str, Chain], beams: dict[str, Beam]) -> Scissor:
+    lower, upper = chains[below], chains[above]
+    normal, first = np.array(joint.normal), np.zeros(3)
+    angles: list[float] = []
     for chain in (lower, upper):
         station = chain.stations[chain.joints[joint.mark]]
         along = frames_at(beams[chain.mark].curve, np.array([station])).tangent[0]
@@ -187,14 +188,16 @@ def _scissor(joint: Joint, lower: Chain, upper: Chain, beams: dict[str, Beam]) -
     )
 
 
-def _crossed(shell: Shell, of_plank: dict[str, str]) -> dict[str, tuple[str, ...]]:
-    """Return for each joint of beams and geodesics the marks of those that meet there, from the lowest layer up."""
+def _crossed(shell: Shell, of_plank: dict[str, str]) -> dict[str, tuple[str, str]]:
+    """Return for each joint of two beams, or beam and geodesic, the marks of both, the lower one first."""
     layers = {plank.mark: plank.layer for plank in shell.planks}
-    found = {}
+    found: dict[str, tuple[str, str]] = {}
     for joint in shell.joints:
         if joint.kind in ("AA", "AG", "boundary"):
             meeting = sorted((layers[mark], of_plank[mark]) for mark in joint.members if mark in of_plank)
-            found[joint.mark] = tuple(dict.fromkeys(mark for _, mark in meeting))
+            marks = tuple(dict.fromkeys(mark for _, mark in meeting))
+            if len(marks) == 2:
+                found[joint.mark] = (marks[0], marks[1])
     return found
 
 
@@ -206,12 +209,12 @@ def shell_net(shell: Shell) -> Net:
     begin, near = _laid_out(shell, members, is_ring(shell))
     places = {member.mark: _stations(member)[1] for member in members}
 
-    def apart(joint: str, marks: tuple[str, ...]) -> bool:
+    def apart(joint: str, marks: tuple[str, str]) -> float:
         a, b = (begin[mark][places[mark][joint]] for mark in marks)
-        return float(np.linalg.norm(a - b)) > near
+        return float(np.linalg.norm(a - b))
 
-    pairs = {joint: marks for joint, marks in _crossed(shell, of_plank).items() if len(marks) == 2}
-    left_open = {joint for joint, marks in pairs.items() if apart(joint, marks)}
+    pairs = _crossed(shell, of_plank)
+    left_open = {joint for joint, marks in pairs.items() if apart(joint, marks) > near}
     studs = [joint for joint in shell.joints if joint.kind == "AA" and joint.mark in pairs]
     if not studs:
         raise PlanError(f"{shell.mark}: no two beams cross on a stud; only a shell with AA nodes can be laid flat")
@@ -222,12 +225,12 @@ def shell_net(shell: Shell) -> Net:
         np.add.at(start, chain.points, begin[chain.mark])
         np.add.at(met, chain.points, 1.0)
     by_mark, beams = {chain.mark: chain for chain in chains}, {beam.mark: beam for beam in shell.beams}
-    scissors = (_scissor(joint, *(by_mark[mark] for mark in pairs[joint.mark]), beams) for joint in kept)
+    scissors = (_scissor(joint, *pairs[joint.mark], by_mark, beams) for joint in kept)
     rays = (_ray(plank, pairs, by_mark, left_open) for plank in geodesics)
     return Net(start / met[:, None], chains, tuple(scissors), tuple(rays), tuple(sorted(left_open)))
 
 
-def _ray(plank: Plank, pairs: dict[str, tuple[str, ...]], chains: dict[str, Chain], left_open: set[str]) -> Ray:
+def _ray(plank: Plank, pairs: dict[str, tuple[str, str]], chains: dict[str, Chain], left_open: set[str]) -> Ray:
     joints, points, stations = [], [], []
     for place in plank.joints:
         if place.joint not in pairs or place.joint in left_open:

@@ -1,4 +1,4 @@
-"""Residuals of a net that is laid flat, with their sparse Jacobians: stretch, bending, turn of the nodes, straight rays.
+"""Residuals of a net that is laid flat, with sparse Jacobians: stretch, bending, turn of nodes, straight rays.
 
 The unknowns are the coordinates x, y of point 0, then 1, ...; then the angle and offset of the line of each ray.
 """
@@ -36,7 +36,7 @@ class Residuals:
 
 @dataclass(frozen=True, eq=False)
 class Arrays:
-    """A net as arrays: index and rest value of each chord, bend, scissor and crossing; ``pivot`` a point of each ray."""
+    """A net as arrays: indices and rest values of chords, bends, scissors and crossings; a pivot of each ray."""
 
     points: int
     chords: Ints

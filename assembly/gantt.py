@@ -6,8 +6,10 @@ from math import ceil
 import numpy as np
 
 from assembly.drawing import CHARACTER, Style, group, line, number, polygon, rectangle, svg, text
+from assembly.language import Language, say
+from assembly.names import figure
 from assembly.schedule import Schedule, ScheduledStep, people_curve
-from assembly.steps import Plan, Step
+from assembly.steps import Phase, Plan, Step
 
 WIDTH, HEIGHT = 2970.0, 2100.0
 _LEFT, _RIGHT, _TOP, _CURVE, _LEGEND = 210.0, 2890.0, 250.0, 300.0, 190.0
@@ -16,17 +18,18 @@ _INK, _THIN, _GRID = Style("#000"), Style("none", "#000", 1.5), Style("none", "#
 _NIGHT, _LIMIT = Style("none", "#000", 2.5), Style("none", "#000", 3.0, "14 9")
 _MOST_DAYS = 40
 
-# What is drawn alike, in the order of the legend: name, paint and phases.
-_LOOKS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
-    ("make, unbolt", "white", ("prefabricate", "unbolt")),
-    ("lay, take off", "light", ("lay A1", "lay G", "lay A2", "take off beams", "take off geodesics")),
-    ("studs", "rising", ("studs", "pull studs")),
-    ("hoist, hang, lower", "black", ("hoist", "hang", "lower")),
-    ("edge planks", "crossed", ("edge planks", "pull edge planks")),
-    ("fix, release", "upright", ("fix geodesics", "release geodesics")),
+# What is drawn alike, in the order of the legend: key of its name, paint and phases.
+_LOOKS: tuple[tuple[str, str, tuple[Phase, ...]], ...] = (
+    ("make", "white", ("prefabricate", "unbolt")),
+    ("lay", "light", ("lay A1", "lay G", "lay A2", "lay", "slide", "take off beams", "take off geodesics")),
+    ("studs", "rising", ("studs", "join", "pull studs")),
+    ("hoist", "black", ("hoist", "hang", "lower")),
+    ("edges", "crossed", ("edge planks", "pull edge planks")),
+    ("fix", "upright", ("fix geodesics", "release geodesics")),
     ("tighten", "dotted", ("tighten",)),
-    ("feet, props", "level", ("feet", "clear feet", "prop")),
-    ("stand, lift off", "dark", ("stand", "lift off")),
+    ("splices", "netted", ("divide", "splice")),
+    ("feet", "level", ("feet", "clear feet", "prop")),
+    ("stand", "dark", ("stand", "lift off")),
     ("ridges", "falling", ("ridges", "open ridges")),
     ("cover", "middle", ("cover", "uncover")),
     ("passports", "squared", ("passports",)),
@@ -39,6 +42,7 @@ _HATCHES = {
     "upright": ('<path d="M5 0V10"/>', 10),
     "level": ('<path d="M0 5H10"/>', 10),
     "dotted": ('<path d="M4 5H7M11 12H14"/>', 14),
+    "netted": ('<path d="M0 0L8 8L0 16M16 0L8 8L16 16"/>', 16),
     "squared": ('<path d="M8 0V16M0 8H16"/>', 16),
 }
 
@@ -68,10 +72,6 @@ def _rows(steps: Iterable[ScheduledStep]) -> dict[str, int]:
         ends[row : row + 1] = [step.end_minute]
         rows[step.id] = row
     return rows
-
-
-def _lane_name(shell: str) -> str:
-    return shell or "Site"
 
 
 def _number_width(step: Step) -> float:
@@ -112,7 +112,7 @@ def _bar(x: float, y: float, width: float, high: float, step: Step, critical: bo
     return "".join(items)
 
 
-def _axis(schedule: Schedule, x_of: float, top: float, bottom: float) -> Iterator[str]:
+def _axis(schedule: Schedule, x_of: float, top: float, bottom: float, language: Language) -> Iterator[str]:
     """Yield the days over the lanes with a line at the end of each; fewer days are named where there are many."""
     days = max(1, ceil(schedule.makespan / schedule.day_minutes))
     wide = x_of * schedule.day_minutes
@@ -122,7 +122,7 @@ def _axis(schedule: Schedule, x_of: float, top: float, bottom: float) -> Iterato
         yield line(np.array([(x, top - 12.0), (x, bottom)]), _GRID)
     for day in range(0, days, each):
         yield group([text(str(day + 1), _LEFT + (day + 0.5) * wide, top - 28.0, _WORDS)], _INK)
-    yield group([text("Day", _LEFT - 20.0, top - 28.0, _WORDS, "end")], _INK)
+    yield group([text(say(language, "schedule.gantt.day"), _LEFT - 20.0, top - 28.0, _WORDS, "end")], _INK)
 
 
 def _lanes(plan: Plan, schedule: Schedule, x_of: float, top: float, bottom: float) -> Iterator[str]:
@@ -135,7 +135,19 @@ def _lanes(plan: Plan, schedule: Schedule, x_of: float, top: float, bottom: floa
     y = top
     for shell, count in zip(shells, counts, strict=True):
         tall = (count + 0.5) * high
-        yield group([text(_lane_name(shell), _LEFT - 20.0, y + tall / 2.0, 40.0, "end", bold=True)], _INK)
+        yield group(
+            [
+                text(
+                    shell or say(plan.language, "schedule.gantt.site"),
+                    _LEFT - 20.0,
+                    y + tall / 2.0,
+                    40.0,
+                    "end",
+                    bold=True,
+                )
+            ],
+            _INK,
+        )
         row = rows[shell]
         bars = [
             (
@@ -156,7 +168,7 @@ def _lanes(plan: Plan, schedule: Schedule, x_of: float, top: float, bottom: floa
         yield line(np.array([(60.0, y), (_RIGHT, y)]), _THIN)
 
 
-def _curve(schedule: Schedule, x_of: float, top: float, bottom: float) -> Iterator[str]:
+def _curve(schedule: Schedule, x_of: float, top: float, bottom: float, language: Language) -> Iterator[str]:
     """Yield the people at work over time, and how many there are."""
     scale = (bottom - top) / (schedule.people + 0.5)
     for people in range(0, schedule.people + 1, max(1, ceil(schedule.people / 8))):
@@ -170,28 +182,36 @@ def _curve(schedule: Schedule, x_of: float, top: float, bottom: float) -> Iterat
     yield polygon(np.array([*points, (points[-1][0], bottom)]), Style("#c8c8c8", "#000", 2.0))
     y = bottom - schedule.people * scale
     yield line(np.array([(_LEFT, y), (_RIGHT, y)]), _LIMIT)
-    yield group([text("People", _LEFT - 20.0, top - 12.0, _WORDS, "end", bold=True)], _INK)
+    yield group(
+        [text(say(language, "schedule.gantt.people"), _LEFT - 20.0, top - 12.0, _WORDS, "end", bold=True)], _INK
+    )
 
 
 def _legend(plan: Plan, top: float) -> Iterator[str]:
     """Yield a sample of each look that the plan has, and of the critical steps."""
     used = {step.phase for step in plan.steps}
-    looks = [(name, phases[0]) for name, _, phases in _LOOKS if used & set(phases)]
+    looks = [(f"looks.{name}", phases[0]) for name, _, phases in _LOOKS if used & set(phases)]
     column = (_RIGHT - 60.0) / 7.0
-    for i, (name, phase) in enumerate((*looks, ("no slack (critical)", ""))):
+    for i, (name, phase) in enumerate((*looks, ("gantt.critical", ""))):
         x, y = 60.0 + i % 7 * column, top + i // 7 * 60.0
         style = Style(_paint(phase), "#000", 2.0 if phase else 7.0)
         yield group([rectangle(x, y, 70.0, 40.0)], style)
-        yield group([text(name, x + 84.0, y + 20.0, _SMALL, "start")], _INK)
+        yield group([text(say(plan.language, f"schedule.{name}"), x + 84.0, y + 20.0, _SMALL, "start")], _INK)
 
 
-def _heading(title: str, schedule: Schedule) -> Iterator[str]:
+def _heading(title: str, schedule: Schedule, language: Language) -> Iterator[str]:
     hours = schedule.day_minutes / 60.0
     work = sum(step.people * (step.end_minute - step.start_minute) for step in schedule.steps) / 60.0
     length = sum(s.end_minute - s.start_minute for s in schedule.steps if s.id in set(schedule.critical_path)) / 60.0
-    facts = (
-        f"{schedule.people} people, {number(hours)} hours a day: {schedule.days:.1f} days, {work:.0f} hours of work. "
-        f"Longest chain {length:.0f} h; {schedule.ratio:.2f} times the least possible. Numbers are those of the steps."
+    facts = say(
+        language,
+        "schedule.gantt.facts",
+        people=schedule.people,
+        hours=figure(number(hours), language),
+        days=figure(f"{schedule.days:.1f}", language),
+        work=f"{work:.0f}",
+        chain=f"{length:.0f}",
+        ratio=figure(f"{schedule.ratio:.2f}", language),
     )
     yield group([text(title, 60.0, 90.0, 56.0, "start", bold=True)], _INK)
     yield group([text(facts, 60.0, 160.0, _WORDS, "start")], _INK)
@@ -200,7 +220,7 @@ def _heading(title: str, schedule: Schedule) -> Iterator[str]:
 def gantt_svg(plan: Plan, schedule: Schedule, title: str) -> str:
     """Return the Gantt chart as SVG, A4 across: steps by their numbers in lanes, thick frames where there is no slack.
 
-    Days are working days from 1.
+    Days are working days from 1; words are in the language of the plan.
     """
     span = max(1, ceil(schedule.makespan / schedule.day_minutes)) * schedule.day_minutes
     x_of = (_RIGHT - _LEFT) / span
@@ -208,10 +228,10 @@ def gantt_svg(plan: Plan, schedule: Schedule, title: str) -> str:
     curve_top, lanes_bottom = legend - _CURVE - 40.0, legend - _CURVE - 95.0
     parts: Sequence[Iterable[str]] = (
         [_patterns(), group([rectangle(0.0, 0.0, WIDTH, HEIGHT)], Style("#fff"))],
-        _heading(title, schedule),
-        _axis(schedule, x_of, _TOP, legend - 40.0),
+        _heading(title, schedule, plan.language),
+        _axis(schedule, x_of, _TOP, legend - 40.0, plan.language),
         _lanes(plan, schedule, x_of, _TOP, lanes_bottom),
-        _curve(schedule, x_of, curve_top, legend - 40.0),
+        _curve(schedule, x_of, curve_top, legend - 40.0, plan.language),
         _legend(plan, legend),
     )
     return svg(WIDTH, HEIGHT, (item for part in parts for item in part))

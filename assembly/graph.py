@@ -1,9 +1,8 @@
 """The gridshell as a graph: every part a node, every joint the edges between the parts that meet in it."""
 
-from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from itertools import combinations, pairwise, product
-from typing import Literal, NotRequired, TypeAlias, TypedDict, get_args
+from itertools import combinations, product
+from typing import NotRequired, TypedDict
 
 import networkx as nx
 import numpy as np
@@ -30,10 +29,8 @@ from aag_cad.parts.model import (
 from aag_cad.parts.products import part_frame
 from aag_cad.parts.quantities import kind, mass, sizes
 from aag_cad.units import Floats, Vector, vector
-from assembly.layers import SAME_HEIGHT, crossing_levels, lying_unit
-
-EdgeKind: TypeAlias = Literal["crossing", "coupled", "bolted", "screwed", "seated", "bladed"]
-EDGE_KINDS: tuple[EdgeKind, ...] = get_args(EdgeKind)
+from assembly.graph_problems import EdgeKind
+from assembly.layers import stacked_planks
 
 _BY_FASTENER: dict[str, EdgeKind] = {"B": "bolted", "W": "screwed", "T": "seated"}
 _BY_JOINT: dict[str, EdgeKind] = {
@@ -136,26 +133,22 @@ def _ties(joint: Joint, beams: Mapping[str, str]) -> Iterator[tuple[str, str, Ed
 
 def _crossings(shell: Shell) -> Iterator[tuple[str, str, JointEdge]]:
     """Yield the planks that lie on one another, each pair of neighbours in height once, and those that meet."""
-    planks = {plank.mark: plank for plank in shell.planks}
     stations = {(p.mark, place.joint): place.station for p in shell.planks for place in p.joints}
-    levels = crossing_levels(shell)
-    for joint in shell.joints:
-        units: dict[str, list[tuple[float, str]]] = defaultdict(list)
-        for level in levels[joint.mark]:
-            if level.mark in planks:
-                units[lying_unit(planks[level.mark])].append((level.height, level.mark))
-        stack = sorted((sum(h for h, _ in listed) / len(listed), unit) for unit, listed in units.items())
-        for (low, lower), (high, upper) in pairwise(stack):
-            for (_, a), (_, b) in product(units[lower], units[upper]):
-                first, second = (a, b) if high - low > SAME_HEIGHT or a < b else (b, a)
-                yield first, second, JointEdge(
+    for joint, lower, upper, lies in stacked_planks(shell):
+        for pair in product(lower, upper):
+            low, high = pair if lies else sorted(pair)
+            yield (
+                low,
+                high,
+                JointEdge(
                     kind="crossing",
                     joint=joint.mark,
                     joint_kind=joint.kind,
-                    above=second if high - low > SAME_HEIGHT else "",
-                    below_mm=stations[first, joint.mark],
-                    above_mm=stations[second, joint.mark],
-                )
+                    above=high if lies else "",
+                    below_mm=stations[low, joint.mark],
+                    above_mm=stations[high, joint.mark],
+                ),
+            )
 
 
 def _placed(points: Floats, placement: Frame) -> list[Vector]:

@@ -7,6 +7,9 @@ from datetime import date, datetime, time, timedelta
 
 from aag_cad.files import write_bytes
 from assembly.errors import PlanError
+from assembly.language import say
+from assembly.names import phase_name
+from assembly.ranges import joined_ranges
 from assembly.schedule import Schedule, ScheduledStep
 from assembly.steps import Plan, Step
 
@@ -66,13 +69,19 @@ def folded(line: str) -> str:
 
 
 def _description(plan: Plan, step: Step) -> str:
+    def word(key: str, **figures: object) -> str:
+        return say(plan.language, f"schedule.calendar.{key}", **figures)
+
     numbers = {each.id: each.number for each in plan.steps}
     after = ", ".join(str(numbers[before]) for before in step.predecessors)
+    crew = word("person" if step.crew == 1 else "people", count=step.crew)
     lines = (
-        f"{step.crew} {'person' if step.crew == 1 else 'people'}" + (f"; after step {after}" if after else ""),
-        "Tools: " + ", ".join(step.tools) if step.tools else "",
+        "; ".join((crew, word("after", steps=after))) if after else crew,
+        word("tools", tools=", ".join(step.tools)) if step.tools else "",
+        word("props", joints=joined_ranges(step.props)) if step.props else "",
         *step.instructions,
-        f"Check: {step.hold}" if step.hold else "",
+        *step.extras,
+        word("check", hold=step.hold) if step.hold else "",
     )
     return "\n".join(line for line in lines if line)
 
@@ -85,7 +94,7 @@ def _event(plan: Plan, step: Step, begin: datetime, end: datetime, stamp: str) -
     yield f"DTEND:{end:%Y%m%dT%H%M%S}"
     yield f"SUMMARY:{_escaped(f'{step.number} {step.title}')}"
     yield f"DESCRIPTION:{_escaped(_description(plan, step))}"
-    yield f"CATEGORIES:{_escaped(step.phase)}"
+    yield f"CATEGORIES:{_escaped(phase_name(step.phase, plan.language))}"
     yield "END:VEVENT"
 
 
@@ -96,7 +105,12 @@ def calendar_text(plan: Plan, schedule: Schedule, start: date, days_per_week: in
     the first day, so that the text does not depend on when it was written. PlanError if that is not a working day.
     """
     stamp = f"{start:%Y%m%d}T000000Z"
-    lines = ["BEGIN:VCALENDAR", "VERSION:2.0", "PRODID:-//AAG toolkit//assembly schedule//EN", "CALSCALE:GREGORIAN"]
+    lines = [
+        "BEGIN:VCALENDAR",
+        "VERSION:2.0",
+        f"PRODID:-//AAG toolkit//assembly schedule//{plan.language.upper()}",
+        "CALSCALE:GREGORIAN",
+    ]
     for step, when in zip(plan.steps, schedule.steps, strict=True):
         lines += _event(plan, step, *times_of(when, schedule, start, days_per_week), stamp)
     return "".join(folded(line) for line in (*lines, "END:VCALENDAR"))

@@ -4,14 +4,15 @@ import math
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from itertools import groupby
 
 import networkx as nx
 
 from aag_cad.findings import Finding
+from assembly.circles import circle_links, few_out, knots, part_of, relations
+from assembly.errors import PlanError
 from assembly.graph_problems import refuse_problems
 from assembly.language import Language, say
-from assembly.laying_units import Crossing, Unit, crossings_of, units_of
+from assembly.laying_units import EDGE_FAMILY, Crossing, crossings_of, units_of
 from assembly.sliding import End, Hindrance, Sliding, Why, slidings
 
 __all__ = ["Crossing", "Interlacing", "Slide", "interlacing"]
@@ -47,89 +48,17 @@ class Interlacing:
     left_out: tuple[str, ...]
 
 
-def _circles(graph: "nx.DiGraph[str]") -> list[list[str]]:
-    """Return the units of each knot in which everybody lies, by way of others, on everybody; sorted."""
-    return sorted(sorted(part) for part in nx.strongly_connected_components(graph) if len(part) > 1)
-
-
-def _in_circle(graph: "nx.DiGraph[str]", unit: str, removed: Collection[str]) -> bool:
-    """Return whether a way leads from a unit back to itself past the units that are removed."""
-    waiting, seen = [unit], {unit}
-    while waiting:
-        for follower in graph.successors(waiting.pop()):
-            if follower == unit:
-                return True
-            if follower not in seen and follower not in removed:
-                seen.add(follower)
-                waiting.append(follower)
-    return False
-
-
-def _without_needless(graph: "nx.DiGraph[str]", removed: Iterable[str]) -> list[str]:
-    """Return those of the removed units that must stay out of an acyclic rest: the others are put back in turn."""
-    out = set(removed)
-    for unit in sorted(out):
-        if not _in_circle(graph, unit, out - {unit}):
-            out.remove(unit)
-    return sorted(out)
-
-
-def _greedy(knot: "nx.DiGraph[str]", sliding: Collection[str]) -> list[str]:
-    """Return units whose removal leaves no circle: in each knot that is left, the one with most ways through it."""
-    rest = knot.copy()
-    chosen = []
-    while circles := _circles(rest):
-        for circle in circles:
-            part = rest.subgraph(circle)
-            unit = min(
-                (mark for mark in circle if mark in sliding),
-                key=lambda mark: (-part.in_degree(mark) * part.out_degree(mark), mark),
-            )
-            chosen.append(unit)
-        rest.remove_nodes_from(chosen)
-    return _without_needless(knot, chosen)
-
-
-def _chosen(knot: "nx.DiGraph[str]", sliding: Collection[str], units: Mapping[str, Unit]) -> list[str]:
-    """Return which units of a knot are slid in: as few as a greedy choice finds, of one family if that takes no more."""
-    found = _greedy(knot, sliding)
-    able = sorted((units[mark].family, mark) for mark in knot if mark in sliding)
-    for _, listed in groupby(able, key=lambda pair: pair[0]):
-        family = [mark for _, mark in listed]
-        rest = knot.copy()
-        rest.remove_nodes_from(family)
-        if nx.is_directed_acyclic_graph(rest):
-            members = _without_needless(knot, family)
-            mixed = len({units[mark].family for mark in found}) > 1
-            if len(members) < len(found) or (len(members) == len(found) and mixed):
-                found = members
-    return found
-
-
-def _relations(crossings: Iterable[Crossing]) -> "nx.DiGraph[str]":
-    """Return an edge from each unit to each that lies on it, with their ``joints``."""
-    where: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for crossing in crossings:
-        where[crossing.lower, crossing.upper].append(crossing.joint)
-    graph: nx.DiGraph[str] = nx.DiGraph()
-    graph.add_nodes_from(sorted({mark for pair in where for mark in pair}))
-    for (lower, upper), joints in sorted(where.items()):
-        graph.add_edge(lower, upper, joints=tuple(joints))
-    return graph
-
-
-def _precedence(
-    units: Iterable[str], relations: "nx.DiGraph[str]", slides: Iterable[str], left_out: Collection[str]
-) -> "nx.DiGraph[str]":
+def _precedence(lying: "nx.DiGraph[str]", slides: Iterable[str], left_out: Collection[str]) -> "nx.DiGraph[str]":
     """Return what must lie before what: what lies below, and before a slide all that it passes."""
     turn = {mark: i + 1 for i, mark in enumerate(slides)}
     where: dict[tuple[str, str], set[str]] = defaultdict(set)
-    for lower, upper, joints in relations.edges(data="joints"):
-        if lower not in left_out and upper not in left_out:
-            swapped = turn.get(lower, 0) > turn.get(upper, 0)
-            where[(upper, lower) if swapped else (lower, upper)] |= set(joints)
+    for lower in lying:
+        for upper, edge in lying[lower].items():
+            if lower not in left_out and upper not in left_out:
+                swapped = turn.get(lower, 0) > turn.get(upper, 0)
+                where[(upper, lower) if swapped else (lower, upper)] |= set(edge["joints"])
     graph: nx.DiGraph[str] = nx.DiGraph()
-    graph.add_nodes_from(sorted(set(units) - set(left_out)))
+    graph.add_nodes_from(mark for mark in lying if mark not in left_out)
     for (first, then), joints in sorted(where.items()):
         graph.add_edge(first, then, joints=tuple(sorted(joints)))
     return graph
@@ -169,10 +98,10 @@ def _reason(language: Language, hindrance: Hindrance, marks: list[str]) -> str:
     )
 
 
-def _reasons(circle: Iterable[str], found: Mapping[str, Sliding], language: Language) -> Iterator[str]:
-    """Yield why the units of a circle cannot be slid in, those with the same figures in one sentence."""
+def _reasons(knot: Iterable[str], found: Mapping[str, Sliding], language: Language) -> Iterator[str]:
+    """Yield why the units of a knot cannot be slid in, those with the same figures in one sentence."""
     told: dict[Hindrance, list[str]] = defaultdict(list)
-    for mark in circle:
+    for mark in knot:
         for hindrance in found[mark].hindrances:
             told[hindrance].append(mark)
     order: tuple[Why, ...] = ("upright", "kept", "unknown", "radius", "length")
@@ -180,57 +109,51 @@ def _reasons(circle: Iterable[str], found: Mapping[str, Sliding], language: Lang
         yield _reason(language, hindrance, told[hindrance])
 
 
-def _finding(
-    knot: "nx.DiGraph[str]", circle: list[str], found: Mapping[str, Sliding], language: Language
-) -> Finding:
-    """Return the error that names a circle, one shortest way round in it with its joints, and what hinders its units."""
-    links = [
-        say(language, "graph.interlacing.link", upper=upper, lower=lower, joints=", ".join(knot[lower][upper]["joints"]))
-        for lower, upper in _shortest_circle(knot)
-    ]
+def _finding(knot: "nx.DiGraph[str]", found: Mapping[str, Sliding], language: Language) -> Finding:
+    """Return the error that names a knot, a shortest circle in it with its joints, and what hinders its units."""
     what = say(
         language,
         "graph.interlacing.circle",
-        links="; ".join(links),
-        reasons="; ".join(_reasons(circle, found, language)),
+        links=circle_links(knot, language),
+        reasons="; ".join(_reasons(knot, found, language)),
     )
     remedy = say(language, "graph.interlacing.remedy")
-    return Finding("AAG951", "error", ", ".join(circle), what, 0.0, 1.0, "", remedy)
+    return Finding("AAG951", "error", ", ".join(knot), what, 0.0, 1.0, "", remedy)
 
 
-def _shortest_circle(knot: "nx.DiGraph[str]") -> list[tuple[str, str]]:
-    """Return the edges of a shortest circle through the first unit of a knot."""
-    first = min(knot)
-    ways = [nx.shortest_path(knot, follower, first) for follower in sorted(knot.successors(first))]
-    way = [first, *min(ways, key=len)]
-    return list(zip(way[:-1], way[1:], strict=True))
-
-
-def interlacing(graph: "nx.MultiGraph[str]", language: Language = "en") -> Interlacing:
+def interlacing(
+    graph: "nx.MultiGraph[str]", language: Language = "en", later: Collection[str] | None = None
+) -> Interlacing:
     """Return the order of laying the units of a graph and the slides that it needs; see ``docs/interlacing.md``.
 
     The graph is that of a gridshell, of one of its shells or any other with the attributes of
-    ``assembly.graph_problems``; PlanError with its faults if it lacks them. A circle that no slide resolves is an
+    ``assembly.graph_problems``; PlanError with its faults if it lacks them. ``later`` are units that do not lie on the
+    floor yet and so are in nobody's way, edge planks (family E) if it is None. A circle that no slide resolves is an
     AAG951 in ``findings``.
     """
     refuse_problems(graph)
     units = units_of(graph)
+    absent = {mark for mark, unit in units.items() if unit.family == EDGE_FAMILY} if later is None else set(later)
     crossings, meetings = crossings_of(graph)
-    relations = _relations(crossings)
-    knots = _circles(relations)
-    tied = [mark for knot in knots for mark in knot]
-    found = slidings(tied, units, crossings, meetings)
-    able = {mark for mark in tied if not found[mark].hindrances}
-    fixed = relations.subgraph(mark for mark in tied if mark not in able)
-    stuck = _circles(fixed)
-    left_out = {mark for circle in stuck for mark in circle}
-    free = relations.subgraph(set(relations) - left_out)
-    chosen = [mark for knot in _circles(free) for mark in _chosen(free.subgraph(knot), able, units)]
-    slides = tuple(_slides(chosen, found, crossings, set(units) - left_out - set(chosen)))
+    lying = relations(units, crossings)
+    tied = {mark for knot in knots(lying) for mark in knot}
+    found = slidings(sorted(tied), units, crossings, meetings, absent)
+    fixed = part_of(lying, {mark for mark in tied if found[mark].hindrances})
+    stuck = knots(fixed)
+    left_out = {mark for knot in stuck for mark in knot}
+    free = part_of(lying, tied - left_out)
+    able, families = set(found) - set(fixed), {mark: unit.family for mark, unit in units.items()}
+    chosen = [mark for knot in knots(free) for mark in few_out(part_of(free, knot), able, families)]
     return Interlacing(
         crossings=crossings,
-        precedence=_precedence(units, relations, chosen, left_out),
-        slides=slides,
-        findings=tuple(_finding(fixed.subgraph(circle), circle, found, language) for circle in stuck),
+        precedence=_precedence(lying, chosen, left_out),
+        slides=tuple(_slides(chosen, found, crossings, set(units) - left_out - set(chosen))),
+        findings=tuple(_finding(part_of(fixed, knot), found, language) for knot in stuck),
         left_out=tuple(sorted(left_out)),
     )
+
+
+def refuse_left_out(found: Interlacing) -> None:
+    """Raise PlanError with all circles of a weave that no slide resolves, if there are any."""
+    if found.findings:
+        raise PlanError("\n".join(finding.text for finding in found.findings))

@@ -1,7 +1,7 @@
 """Who lies above whom: the heights of the members at each crossing, and the order of laying that follows."""
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -10,7 +10,9 @@ import numpy as np
 
 from aag_cad.parts.model import Joint, Plank, Shell
 from aag_cad.units import Floats
+from assembly.circles import circle_links, knots, part_of, relations
 from assembly.errors import PlanError
+from assembly.laying_units import Crossing
 
 SAME_HEIGHT = 1.0
 
@@ -53,49 +55,41 @@ def crossing_levels(shell: Shell) -> dict[str, tuple[Level, ...]]:
     return {joint.mark: tuple(sorted(levels(joint))) for joint in shell.joints}
 
 
+def stacked_planks(shell: Shell) -> Iterator[tuple[Joint, tuple[str, ...], tuple[str, ...], bool]]:
+    """Yield where a unit lies on the next lower one: the joint, the planks of the lower and of the upper unit, True.
+
+    Members whose centres differ by less than 1 mm meet end to end; for them the last is False.
+    """
+    unit_of = {plank.mark: lying_unit(plank) for plank in shell.planks}
+    levels = crossing_levels(shell)
+    for joint in shell.joints:
+        units: dict[str, list[Level]] = defaultdict(list)
+        for level in levels[joint.mark]:
+            if level.mark in unit_of:
+                units[unit_of[level.mark]].append(level)
+        stack = sorted((sum(level.height for level in at) / len(at), unit) for unit, at in units.items())
+        for (low, lower), (high, upper) in pairwise(stack):
+            planks = [tuple(sorted(level.mark for level in units[unit])) for unit in (lower, upper)]
+            yield joint, planks[0], planks[1], high - low > SAME_HEIGHT
+
+
 def layer_precedence(shell: Shell) -> "nx.DiGraph[str]":
     """Return beams and flat planks with an edge from each to what lies on it; the edge's ``joints`` say where.
 
     What lies below must be laid first. Members whose centres differ by less than 1 mm meet end to end and have no
-    order. PlanError if the members are woven so that none of them can be the lowest.
+    order. PlanError with every circle in which the members are woven, so that none of them can be the lowest.
     """
     unit_of = {plank.mark: lying_unit(plank) for plank in shell.planks}
-    graph: nx.DiGraph[str] = nx.DiGraph()
-    graph.add_nodes_from(sorted(set(unit_of.values())))
-    where: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for joint, levels in sorted(crossing_levels(shell).items()):
-        heights: dict[str, list[float]] = defaultdict(list)
-        for level in levels:
-            if level.mark in unit_of:
-                heights[unit_of[level.mark]].append(level.height)
-        stack = sorted((sum(listed) / len(listed), unit) for unit, listed in heights.items())
-        for (low, lower), (high, upper) in pairwise(stack):
-            if high - low > SAME_HEIGHT:
-                where[lower, upper].append(joint)
-    for (lower, upper), joints in sorted(where.items()):
-        graph.add_edge(lower, upper, joints=tuple(joints))
-    _refuse_cycle(graph)
+    crossings = [
+        Crossing(joint.mark, unit_of[lower[0]], unit_of[upper[0]], 0.0, 0.0)
+        for joint, lower, upper, lies in stacked_planks(shell)
+        if lies
+    ]
+    graph = relations(unit_of.values(), crossings)
+    if found := knots(graph):
+        told = "\n".join(f"{', '.join(knot)}: {circle_links(part_of(graph, knot))}" for knot in found)
+        raise PlanError(
+            f"{told}\nnone of them can be laid first; give each family a layer of its own, or join one of these planks "
+            "after the others are in place"
+        )
     return graph
-
-
-def _refuse_cycle(graph: "nx.DiGraph[str]") -> None:
-    """Raise PlanError with the marks of a cycle, if there is one."""
-    if nx.is_directed_acyclic_graph(graph):
-        return
-    links = []
-    for lower, upper in nx.find_cycle(graph):
-        joints = graph.edges[lower, upper].get("joints", ())
-        links.append(f"{upper} lies on {lower}" + (f" at {', '.join(joints[:3])}" if joints else ""))
-    raise PlanError(
-        f"{'; '.join(links)}: none of them can be laid first; give each family a layer of its own, or join one of "
-        "these planks after the others are in place"
-    )
-
-
-def laying_order(precedence: "nx.DiGraph[str]", sweep: Mapping[str, tuple[float, ...]]) -> tuple[str, ...]:
-    """Return the units so that none is laid before what it lies on, and otherwise by rising ``sweep``, then by mark.
-
-    PlanError that names the marks if the precedence runs in a circle.
-    """
-    _refuse_cycle(precedence)
-    return tuple(nx.lexicographical_topological_sort(precedence, key=lambda unit: (sweep[unit], unit)))

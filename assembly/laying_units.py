@@ -12,6 +12,9 @@ from aag_cad.units import Floats, Vector
 # Lines whose directions differ by less are taken for parallel.
 PARALLEL = 1e-9
 
+# Edge planks are pushed in when the shell has its shape; until then they do not lie on the floor.
+EDGE_FAMILY = "E"
+
 
 @dataclass(frozen=True)
 class Unit:

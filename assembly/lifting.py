@@ -1,17 +1,19 @@
-"""Where a segment is slung, and what keeps it stiff until it is joined again."""
+"""Where a segment is slung and propped, and what keeps it stiff until it is joined again."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Literal
 
 import numpy as np
+from scipy.spatial import ConvexHull, QhullError
 
 from aag_cad.units import Floats
 
 LEAST_MARGIN = 100.0
 STIFF_GEODESICS = 3
 _MOST_STUDS = 60
+_PROPPED = 16
 _OVERHANG = 100.0
 # A triangle of which twice the area is below this part of its longest side squared is a line in plan.
 _FLAT = 1e-6
@@ -19,10 +21,11 @@ _FLAT = 1e-6
 
 @dataclass(frozen=True)
 class Lifting:
-    """Studs to sling a segment by, standing as in the vault; ``margin`` is how far inside them its plumb line is, mm.
+    """Joints to sling a segment by, standing as in the vault; ``margin`` is how far inside them its plumb line is, mm.
 
     ``above`` says whether the plane of the studs passes above the centre of gravity: then it hangs without tipping
-    even from short slings. Without three studs around the plumb line there are none, and the margin is negative.
+    even from short slings. They are studs, coupling blocks where studs will not do. Without three joints around the
+    plumb line there are none, and the margin is negative.
     """
 
     studs: tuple[str, ...]
@@ -32,7 +35,7 @@ class Lifting:
 
 @dataclass(frozen=True)
 class Brace:
-    """A temporary piece between two studs: length between them and 100 mm past each, mm.
+    """A temporary piece between two joints: length between them and 100 mm past each, mm.
 
     A ``bar`` is a plank bent along the bare beam ends of a cut, fixed to each of them; a ``tie`` the straight chord
     from the lowest to the highest stud beside a cut; a ``diagonal`` goes from corner to corner.
@@ -65,7 +68,7 @@ def _margins(corners: Floats, centre: Floats) -> tuple[Floats, Floats]:
 
 
 def lifting_points(studs: Mapping[str, Floats], centre: Floats) -> Lifting:
-    """Return the three studs that hold a centre of gravity (3,) best: above it if they can, then with most margin.
+    """Return the three joints that hold a centre of gravity (3,) best: above it if they can, then with most margin.
 
     Points are in vault coordinates, z up. Of more than 60 studs evenly many are tried.
     """
@@ -84,29 +87,57 @@ def lifting_points(studs: Mapping[str, Floats], centre: Floats) -> Lifting:
     return Lifting(tuple(marks[i] for i in triples[best].tolist()), float(margins[best]), bool(above[best]))
 
 
+def margin_inside(plan: Floats, point: Floats) -> float:
+    """Return how far inside the convex hull of points (n, 2) a point (2,) is, mm; negative outside."""
+    try:
+        sides = ConvexHull(plan).equations
+    except QhullError:
+        return -np.inf
+    return float(-(sides[:, :2] @ point + sides[:, 2]).max())
+
+
+def standing_props(feet: Sequence[Floats], studs: Mapping[str, Floats], centre: Floats) -> tuple[str, ...]:
+    """Return the two studs under which props hold best what stands on its feet, of the sixteen highest.
+
+    The plumb line of the centre of gravity (3,) runs inside feet and props with most margin in plan; of like pairs the
+    higher one. Points (3,) with z up; none without feet or two studs.
+    """
+    highest = sorted(studs, key=lambda mark: (-round(float(studs[mark][2]), 3), mark))[:_PROPPED]
+    if not feet or len(highest) < 2:
+        return ()
+
+    def worth(pair: tuple[str, ...]) -> tuple[float, float]:
+        plan = np.array([*(foot[:2] for foot in feet), *(studs[mark][:2] for mark in pair)])
+        return round(margin_inside(plan, centre[:2])), round(sum(float(studs[mark][2]) for mark in pair), 3)
+
+    return max(combinations(highest, 2), key=worth)
+
+
 def _between(kind: Literal["bar", "tie", "diagonal"], start: str, end: str, studs: Mapping[str, Floats]) -> Brace:
     span = float(np.linalg.norm(studs[end] - studs[start]))
     return Brace(kind, start, end, round(span + 2.0 * _OVERHANG, 1))
 
 
 def braces(
-    studs: Mapping[str, Floats], columns: Mapping[int, list[str]], cut_sides: Mapping[int, bool], geodesics: int
+    points: Mapping[str, Floats],
+    columns: Mapping[int, list[str]],
+    cut_sides: Mapping[int, bool],
+    ends: tuple[list[str], list[str]],
 ) -> tuple[Brace, ...]:
     """Return the temporary bracing of a segment.
 
-    ``studs`` are points in vault coordinates; ``columns`` the studs of each bay from the first to the last, each from
-    the lowest to the highest; ``cut_sides`` the bays beside a cut, and whether the geodesic of the line stays there.
-    Each cut gets a tie, and a bar where its geodesic is missing; a segment with fewer than three geodesics two
-    diagonals, because a grid of beams alone is a mechanism.
+    ``points`` are joints in vault coordinates; ``columns`` the studs of each bay from the lowest to the highest;
+    ``cut_sides`` the bays beside a cut, and whether the geodesic of the line stays there. Each cut gets a tie, and a
+    bar where its geodesic is missing. ``ends`` are the outermost columns of a segment with fewer than three geodesics,
+    else empty: it gets two diagonals, because a grid of beams alone is a mechanism.
     """
     found = []
     for bay, keeps in cut_sides.items():
         column = columns.get(bay, [])
         if len(column) > 1:
-            found += [] if keeps else [_between("bar", column[0], column[-1], studs)]
-            found.append(_between("tie", column[0], column[-1], studs))
-    filled = [column for column in columns.values() if column]
-    if geodesics < STIFF_GEODESICS and len(filled) > 1:
-        first, last = filled[0], filled[-1]
-        found += [_between("diagonal", a, b, studs) for a, b in ((first[0], last[-1]), (first[-1], last[0]))]
+            found += [] if keeps else [_between("bar", column[0], column[-1], points)]
+            found.append(_between("tie", column[0], column[-1], points))
+    if all(ends):
+        first, last = ends
+        found += [_between("diagonal", a, b, points) for a, b in ((first[0], last[-1]), (first[-1], last[0]))]
     return tuple(found)

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, combinations
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.units import Floats
 from assembly.drawing import CHARACTER, Style, circle, group, line, polygon, rectangle, svg, text
 from assembly.errors import PlanError
+from assembly.language import Language, say, says, words_table
 from assembly.locking_model import (
     LockingModel,
     Prop,
@@ -30,6 +31,8 @@ from assembly.locking_model import (
     state_modes,
     state_sag,
 )
+from assembly.names import figure
+from assembly.ranges import joined_ranges
 
 Group: TypeAlias = tuple[str, ...]
 Value: TypeAlias = Callable[[frozenset[Group]], float]
@@ -301,14 +304,34 @@ def locking_rows(order: LockingOrder) -> list[tuple[str, ...]]:
     return [*rows, _row(order.shell, "released", order.released)]
 
 
+def locking_table(order: LockingOrder, language: Language = "en") -> dict[str, Any]:
+    """Return the order as head and rows of text for print: a line for each step, the last for the finished shell."""
+    rows, (first, last) = [], (say(language, f"pictures.locking.{name}") for name in ("start", "released"))
+    told = [first, *(joined_ranges(step.marks) for step in order.steps[1:]), last]
+    for i, step in enumerate((*order.steps, order.released)):
+        hertz = [figure(f"{frequency(value):.2f}", language) for value in step.eigenvalues[:2]]
+        props = joined_ranges([prop.joint for prop in step.props])
+        head, tail = str(i) if i < len(order.steps) else "", f"{step.propped:.0f}" if props else ""
+        modes = [str(step.soft_modes), *hertz, ""][:3]
+        rows.append([head, told[i], *modes, f"{step.displacement:.0f}", _short(step.at), props, tail])
+    return {"head": list(says(language, "pictures.locking.head")), "rows": rows}
+
+
 @dataclass(frozen=True)
 class PlotWords:
-    """The words of the plot."""
+    """The words of the plot; ``lowest`` has a place for the mark of the shell."""
 
-    hoisted: str = "hoisted"
-    axis: str = "Hz"
-    soft: str = "soft"
-    lowest: str = "softest mode, and the next ones"
+    language: Language
+    hoisted: str
+    axis: str
+    soft: str
+    lowest: str
+
+
+def plot_words(language: Language = "en") -> PlotWords:
+    """Return the words of the plot in a language."""
+    words = words_table("pictures")["locking"]
+    return PlotWords(language, *(words[key][language] for key in ("hoisted", "axis", "soft", "lowest")))
 
 
 _WIDTH, _HEIGHT = 1700.0, 760.0
@@ -331,14 +354,16 @@ def _short(mark: str) -> str:
     return mark.partition("-")[2]
 
 
-def _axes(x: Floats, order: LockingOrder, ticks: Sequence[float], y: Callable[[float], float]) -> Iterator[str]:
+def _axes(
+    x: Floats, order: LockingOrder, ticks: Sequence[float], y: Callable[[float], float], language: Language
+) -> Iterator[str]:
     """Yield grid lines, the band of soft modes, ticks and the planks of each step in at most three lines."""
     right = _WIDTH - _RIGHT
     soft = y(frequency(order.threshold))
     yield group([rectangle(_LEFT, soft, right - _LEFT, y(0.0) - soft)], Style("#ddd"))
     for tick in ticks:
         yield line(np.array([(_LEFT, y(tick)), (right, y(tick))]), Style(stroke="#999", width=1.0))
-        yield text(f"{tick:g}", _LEFT - 14, y(tick), _SMALL, "end")
+        yield text(figure(f"{tick:g}", language), _LEFT - 14, y(tick), _SMALL, "end")
     size = min(_SMALL, float(x[1] - x[0]) / (_LETTERS * CHARACTER))
     for place, step, number in zip(x.tolist(), order.steps, range(len(order.steps)), strict=True):
         yield text(str(number), place, y(0.0) + 30, _SIZE, bold=True)
@@ -353,7 +378,7 @@ def locking_svg(order: LockingOrder, words: PlotWords | None = None) -> str:
 
     The grey band below holds the soft modes.
     """
-    said = words or PlotWords()
+    said = words or plot_words()
     shown = np.array([[frequency(v) for v in step.eigenvalues[:_SHOWN]] for step in order.steps])
     top, ticks = _scale(float(shown.max()))
 
@@ -361,9 +386,9 @@ def locking_svg(order: LockingOrder, words: PlotWords | None = None) -> str:
         return _HEIGHT - _BOTTOM - value / top * (_HEIGHT - _TOP - _BOTTOM)
 
     x = np.linspace(_LEFT + 60.0, _WIDTH - _RIGHT - 60.0, len(order.steps))
-    items = list(_axes(x, order, ticks, y))
+    items = list(_axes(x, order, ticks, y, said.language))
     items.append(text(said.axis, _LEFT - 14, _TOP - 34, _SMALL, "end"))
-    items.append(text(f"{order.shell}: {said.lowest}", _LEFT, _TOP - 34, _SMALL, "start"))
+    items.append(text(said.lowest.format(shell=order.shell), _LEFT, _TOP - 34, _SMALL, "start"))
     items.append(text(said.soft, _WIDTH - _RIGHT - 12, y(frequency(order.threshold)) + 22, _SMALL, "end"))
     items.append(text(said.hoisted, float(x[0]), y(0.0) + 68, _SMALL))
     for mode in reversed(range(shown.shape[1])):

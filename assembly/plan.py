@@ -8,21 +8,21 @@ from aag_cad.errors import FileError
 from aag_cad.parts.model import Gridshell, JointKind, Shell, all_parts
 from aag_cad.parts.quantities import mass, sizes
 from aag_cad.parts.store import value_of
-from assembly.crew import Crew, crew_of, hands_for
+from assembly.crew import Crew, crew_of, hands_for, lifting_findings
 from assembly.errors import PlanError
 from assembly.kit import shell_kit
 from assembly.language import Language, say
 from assembly.locking import LockingOrder
 from assembly.process import Work, shell_works
-from assembly.segments import Segmentation
-from assembly.site import divide_works, site_works
+from assembly.segments import Segmentation, segment_findings
+from assembly.site import divide_works, made_with_splices, site_works
 from assembly.steps import Phase, Plan, Step
 from assembly.wording import Fastener, fasteners_by_kind, wording
 
 __all__ = ["Plan", "Step", "plan_json", "plan_of", "read_plan"]
 
 PLAN_VERSION = 2
-_EACH_HELD = ("hoist", "stand")
+_EACH_HELD = ("hoist", "stand", "splice")
 
 
 def piece_weights(gridshell: Gridshell) -> dict[str, tuple[float, float]]:
@@ -104,7 +104,7 @@ def plan_of(
     orders = {order.shell: order for order in locking}
     chapters: list[tuple[str, Sequence[Shell], tuple[Work, ...]]] = []
     for shell in gridshell.shells:
-        works = shell_works(shell, orders.get(shell.mark), language)
+        works = tuple(made_with_splices(shell_works(shell, orders.get(shell.mark), language), segmentation, language))
         chapters.append((shell.mark, (shell,), (*works, *divide_works(shell, segmentation, language))))
     chapters.append(("", gridshell.shells, site_works(gridshell, segmentation, language, locking)))
     steps: list[Step] = []
@@ -113,7 +113,13 @@ def plan_of(
         for i, work in enumerate(works):
             last = work.phase in _EACH_HELD or all(later.phase != work.phase for later in works[i + 1 :])
             steps.append(_step(work, len(steps) + 1, last, name, fasteners, crew, weights, language))
-    return Plan(gridshell.name, tuple(steps), language)
+    shells = {shell.mark for shell in gridshell.shells}
+    carried = {mark: weight for mark, weight in weights.items() if mark not in shells}
+    findings = (
+        *lifting_findings(carried, crew, language),
+        *(segment_findings(segmentation) if segmentation else ()),
+    )
+    return Plan(gridshell.name, tuple(steps), language, findings)
 
 
 def plan_json(plan: Plan) -> str:

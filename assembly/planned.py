@@ -31,7 +31,9 @@ NO_LIMITS = Limits(*(4 * (float("inf"),)))
 
 
 def limits_of(transport: Transport) -> Limits:
-    """Return what a transport and the crane on site carry."""
+    """Return what a transport and the crane on site carry; no limits where shells are built in their place."""
+    if not transport.shells:
+        return NO_LIMITS
     return Limits(transport.length, transport.width, transport.height, transport.mass, transport.crane)
 
 
@@ -53,7 +55,7 @@ def planned_of(
     def scheduled(plan: Plan) -> Schedule:
         return schedule_of(plan, step_minutes(plan, gridshell, crew.minutes), crew.people, crew.hours_per_day)
 
-    locking, found = locking_orders(gridshell, edges_first=edges_first), segments(gridshell, limits)
+    locking, found = locking_orders(gridshell, edges_first=edges_first), segments(gridshell, limits, language)
     plan = plan_of(gridshell, crew.people, crew.lift_limit, locking=locking, segmentation=found, language=language)
     down = disassembly_of(gridshell, crew.people, crew.lift_limit, language=language)
     return Planned(plan, scheduled(plan), locking, found, down, scheduled(down))

@@ -1,86 +1,64 @@
-"""The assembly sequence as a printed booklet: one card a step, by the template ``printouts/sequence.typ``."""
+"""The booklets as PDF, by the template ``printouts/sequence.typ``: one card a step, with what a crew needs beside them."""
 
 import json
 import os
 import shutil
 import tempfile
 from pathlib import Path
-from typing import Any
 
 import typst
 
-from aag_cad.files import write_bytes
-from aag_cad.parts.model import Gridshell, all_parts
+from aag_cad.files import write_bytes, write_text
+from aag_cad.parts.model import Gridshell
 from aag_cad.resources import template
-from assembly.cards import PHASE_NAMES, step_card, totals
-from assembly.perspective import perspective_svg
-from assembly.plan import piece_weights
-from assembly.scenes import Sheets, key_svg, legend_svgs, phase_svg, sheets_of, step_pictures
-from assembly.sections import block_section_svg, node_section_svg
-from assembly.steps import Plan
+from assembly.booklet import Booklet, common_of, disassembly_booklet, sequence_booklet
+from assembly.page import page_html
+from assembly.planned import Planned
+
+_TEMPLATES = ("sequence.typ", "booklet.typ", "card.typ")
 
 
-def _write_pictures(folder: Path, pictures: dict[str, str]) -> None:
-    for name, picture in pictures.items():
-        (folder / f"{name}.svg").write_text(picture, encoding="utf-8")
-
-
-def _cover(plan: Plan, gridshell: Gridshell, sheets: Sheets) -> dict[str, str]:
-    """Return the pictures of the first pages by file name."""
-    first = gridshell.shells[0]
-    pictures = {"vault": perspective_svg(gridshell)}
-    if first.studs:
-        pictures["node"] = node_section_svg(first)
-    if first.blocks and first.screws:
-        pictures["block"] = block_section_svg(first)
-    pictures |= {f"legend-{name}": picture for name, picture in legend_svgs().items()}
-    pictures |= {f"key-{shell.mark}": key_svg(gridshell, shell.mark) for shell in gridshell.shells}
-    lasts = {step.phase: step for step in plan.steps if step.shell == first.mark}
-    return pictures | {f"phase-{i}": phase_svg(sheets, plan, step) for i, step in enumerate(lasts.values())}
-
-
-def sequence_data(plan: Plan, gridshell: Gridshell, folder: Path) -> dict[str, Any]:
-    """Write the pictures of a booklet to a folder and return the data that its template prints."""
-    weights = piece_weights(gridshell)
-    parts = {part.mark: part for part in all_parts(gridshell)}
-    sheets = sheets_of(plan, gridshell)
-    cards: list[dict[str, Any]] = []
-    stood: list[str] = []
-    for step in plan.steps:
-        card = step_card(gridshell, plan, step, parts, weights)
-        pictures = {f"step-{step.number}-{i}": svg for i, svg in enumerate(step_pictures(sheets, step, stood))}
-        _write_pictures(folder, pictures)
-        cards.append(card | {"pictures": [f"{name}.svg" for name in pictures]})
-        stood += list(step.assemblies) if step.phase == "stand" else []
-    cover = _cover(plan, gridshell, sheets)
-    _write_pictures(folder, cover)
-    lasts = {step.phase: step for step in plan.steps if step.shell == gridshell.shells[0].mark}
-    phases = [
-        {"picture": f"phase-{i}.svg", "phase": phase, "name": PHASE_NAMES[phase]} for i, phase in enumerate(lasts)
-    ]
-    return {
-        "title": gridshell.title,
-        "name": gridshell.name,
-        "people": max((step.crew for step in plan.steps), default=0),
-        "totals": totals(gridshell, weights),
-        "phases": phases,
-        "sections": [f"{name}.svg" for name in ("node", "block") if name in cover],
-        "steps": cards,
-    }
-
-
-def sequence_pdf(plan: Plan, gridshell: Gridshell) -> bytes:
-    """Return the booklet as PDF; the same plan gives the same bytes."""
+def booklet_pdf(booklet: Booklet) -> bytes:
+    """Return a booklet as PDF on A4; the same booklet gives the same bytes."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        data = sequence_data(plan, gridshell, folder)
-        (folder / "data.json").write_text(json.dumps(data, ensure_ascii=False), encoding="utf-8")
-        main = folder / "sequence.typ"
-        shutil.copyfile(template("printouts", "sequence.typ"), main)
-        pdf: bytes = typst.compile(str(main), root=str(folder), ignore_system_fonts=True, format="pdf")
+        for title, picture in booklet.pictures.items():
+            (folder / f"{title}.svg").write_text(picture, encoding="utf-8")
+        (folder / "data.json").write_text(json.dumps(booklet.data, ensure_ascii=False), encoding="utf-8")
+        for file in _TEMPLATES:
+            shutil.copyfile(template("printouts", file), folder / file)
+        main = str(folder / _TEMPLATES[0])
+        pdf: bytes = typst.compile(main, root=str(folder), ignore_system_fonts=True, format="pdf")
     return pdf
 
 
-def write_sequence(plan: Plan, gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
+def sequence_pdf(planned: Planned, gridshell: Gridshell) -> bytes:
+    """Return the booklet of putting together as PDF; the same plan gives the same bytes."""
+    return booklet_pdf(sequence_booklet(planned, common_of(gridshell, planned.plan.language)))
+
+
+def disassembly_pdf(planned: Planned, gridshell: Gridshell) -> bytes:
+    """Return the booklet of taking down as PDF; the same plan gives the same bytes."""
+    return booklet_pdf(disassembly_booklet(planned, common_of(gridshell, planned.down.language)))
+
+
+def write_sequence(planned: Planned, gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     """Write the booklet as an A4 PDF file; FileError if it cannot be written, and then nothing is left behind."""
-    write_bytes(path, sequence_pdf(plan, gridshell))
+    write_bytes(path, sequence_pdf(planned, gridshell))
+
+
+def write_disassembly(planned: Planned, gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
+    """Write the booklet of taking down as PDF; FileError if it cannot be written, and then nothing is left behind."""
+    write_bytes(path, disassembly_pdf(planned, gridshell))
+
+
+def write_booklets(planned: Planned, gridshell: Gridshell, folder: Path) -> None:
+    """Write sequence.pdf, disassembly.pdf and sequence.html to a folder: what they share is made only once.
+
+    FileError if one cannot be written.
+    """
+    common = common_of(gridshell, planned.plan.language)
+    sequence = sequence_booklet(planned, common)
+    write_bytes(folder / "sequence.pdf", booklet_pdf(sequence))
+    write_bytes(folder / "disassembly.pdf", booklet_pdf(disassembly_booklet(planned, common)))
+    write_text(folder / "sequence.html", page_html(sequence, planned.plan, gridshell))

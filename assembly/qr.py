@@ -5,6 +5,7 @@ import segno
 from assembly.errors import PlanError
 
 MOST_CHARACTERS = 600
+_MASK = 2
 
 
 def qr_rows(content: str) -> list[list[int]]:
@@ -14,7 +15,8 @@ def qr_rows(content: str) -> list[list[int]]:
     """
     if not 0 < len(content) <= MOST_CHARACTERS:
         raise PlanError(f"QR code: {len(content)} characters; allowed 1 to {MOST_CHARACTERS}: shorten the text")
-    return [list(row) for row in segno.make_qr(content, error="m").matrix]
+    # Any mask can be read; to weigh all eight against each other would take most of the time of a booklet.
+    return [list(row) for row in segno.make_qr(content, error="m", mask=_MASK).matrix]
 
 
 def _bars(rows: list[list[int]]) -> list[tuple[int, int, int]]:

@@ -8,11 +8,10 @@ from itertools import pairwise
 import numpy as np
 
 from aag_cad.parts.forming import formed_points
-from aag_cad.parts.members import beam_axes
 from aag_cad.parts.mesh import shell_mesh
-from aag_cad.parts.model import Beam, Bolt, CouplingBlock, Joint, Part, Plank, Screw, Shell, Strap, Stud, Timber
+from aag_cad.parts.model import Beam, Bolt, Joint, Part, Plank, Screw, Shell, Strap, Stud, Timber
 from aag_cad.parts.quantities import mass
-from aag_cad.units import MM3_PER_M3, Floats
+from aag_cad.units import Floats
 from assembly.graph import part_point
 from assembly.splices import Splice, beam_splices, edge_splices
 from assembly.tracks import Track, Tracks, tracks
@@ -33,7 +32,7 @@ class PlankPiece:
 
 @dataclass(frozen=True)
 class Run:
-    """What lies between two stops: marks of whole parts, pieces of planks, splice blocks carried by (beam, joint).
+    """What lies between two stops: marks of whole parts and pieces of planks.
 
     ``mass`` in kg, ``centre`` (3,) and ``corners`` (n, 3) in the coordinates of the shell.
     """
@@ -41,7 +40,6 @@ class Run:
     geodesics: tuple[str, ...]
     parts: tuple[str, ...]
     pieces: tuple[PlankPiece, ...]
-    splices: tuple[tuple[str, str], ...]
     mass: float
     centre: Floats
     corners: Floats
@@ -224,26 +222,6 @@ def _piece_plank(plank: Plank, piece: PlankPiece, left_out: frozenset[str]) -> P
     return replace(plank, blank=replace(plank.blank, length=piece.end - piece.start, holes=holes))
 
 
-def splice_block_mass(item: Divisible, splice: Splice) -> float:
-    """Return the mass of a splice block of the section of the coupling block that it stands for, kg; 0 of a plate."""
-    block = next((item.small[mark] for mark in splice.left_out if isinstance(item.small[mark], CouplingBlock)), None)
-    if not isinstance(block, CouplingBlock):
-        return 0.0
-    return splice.length * block.width * block.thickness * item.timber.density / MM3_PER_M3
-
-
-def _block_corners(item: Divisible, splice: Splice) -> Floats:
-    """Return the four far corners of a splice block at each of its ends, (8, 3)."""
-    beam = item.beams[splice.member]
-    point, tangent, _across, normal = beam_axes(beam, _station(item, splice))
-    block = next(item.small[mark] for mark in splice.left_out if isinstance(item.small[mark], CouplingBlock))
-    assert isinstance(block, CouplingBlock)
-    side = np.cross(normal, tangent)
-    signs = np.array([(a, b, c) for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]) / 2.0
-    sizes = np.array([splice.length, block.width, block.thickness])
-    return np.asarray(point + (signs * sizes) @ np.array([tangent, normal, side]))
-
-
 def _station(item: Divisible, splice: Splice) -> float:
     """Return where a splice is along its beam or edge plank; a beam's planks have stations of their own."""
     if splice.kind == "plate":
@@ -264,28 +242,14 @@ def _spans(item: Divisible, start: int, end: int) -> dict[str, list[PlankPiece]]
     return spans
 
 
-def _carried_splices(item: Divisible, start: int, end: int) -> list[Splice]:
-    """Return the splices whose blocks stay on this run: those of the cut lines whose geodesics it keeps."""
-    keeps = [stop for stop in cut_stops(item.tracks, start, end) if (stop % 2 == 0) == (stop == start)]
-    return [splice for stop in keeps for splice in run_splices(item, stop) if splice.kind == "block"]
-
-
-def _splice_screws(item: Divisible, blocks: list[Splice]) -> Iterator[str]:
-    """Yield the screws by which splice blocks hang on the geodesic that they travel with."""
-    at = {splice.joint for splice in blocks}
-    for joint in (joint for joint in item.shell.joints if joint.mark in at):
-        yield from (mark for mark in joint.fasteners if isinstance(item.small.get(mark), Screw))
-
-
 def run_between(item: Divisible, start: int, end: int) -> Run:
-    """Return what lies between two stops of a shell; shoes, rods, cover and what the splices replace stay out.
+    """Return what lies between two stops of a shell; shoes, rods, cover, splices and what they replace stay out.
 
-    Fasteners that would join two segments are put in on site and belong to none.
+    Fasteners that would join two segments are put in on site and belong to none, and so are splice blocks and plates.
     """
     spans = _spans(item, start, end)
     left_out = frozenset(s.joint for stop in cut_stops(item.tracks, start, end) for s in run_splices(item, stop))
-    blocks = _carried_splices(item, start, end)
-    small = tuple(dict.fromkeys((*_joint_parts(item, spans), *_splice_screws(item, blocks))))
+    small = tuple(dict.fromkeys(_joint_parts(item, spans)))
     masses, centres, corners, whole, pieces = [], [], [], [], []
     for mark, held in spans.items():
         stations, rings = item.rings[mark]
@@ -303,15 +267,10 @@ def run_between(item: Divisible, start: int, end: int) -> Run:
         masses.append(item.masses[mark])
         centres.append(item.centres[mark])
         corners += [item.small_corners[mark]] if mark in item.small_corners else []
-    for splice in blocks:
-        masses.append(splice_block_mass(item, splice))
-        corners.append(_block_corners(item, splice))
-        centres.append(corners[-1].mean(axis=0))
     return Run(
         tuple(mark for mark in spans if item.planks[mark].family == "G"),
         (*whole, *small),
         tuple(pieces),
-        tuple((splice.member, splice.joint) for splice in blocks),
         float(sum(masses)),
         np.asarray(np.average(centres, axis=0, weights=masses)),
         np.concatenate(corners),

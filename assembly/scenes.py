@@ -14,13 +14,25 @@ from assembly.flat import flat_order
 from assembly.graph import joint_of
 from assembly.kit import driven_from_outside
 from assembly.pictures import NEW, PIECES, STEEL, THERE, Scene, prop_items, scene_svg
+from assembly.outline import shell_outline
 from assembly.ranges import short_mark
-from assembly.sheets import PAGE_WIDTH, Sheets, sheets_of, twin_mark, twin_step
+from assembly.segment_scenes import segment_scene, stood_segments
+from assembly.segments import Segmentation
+from assembly.sheets import MARGIN, PAGE_WIDTH, Sheets, sheets_of, twin_mark, twin_step
 from assembly.site_scenes import elevation_svg, foot_sections, middle_of, numbers_of, ridge_pictures, site_svg
 from assembly.steel import strap_section_svg
 from assembly.steps import DOWN_PHASES, Plan, Step
 
-__all__ = ["PAGE_WIDTH", "Sheets", "legend_svgs", "phase_svg", "sheets_of", "step_pictures"]
+__all__ = [
+    "PAGE_WIDTH",
+    "Sheets",
+    "home_shell",
+    "legend_svgs",
+    "phase_svg",
+    "picture_key",
+    "sheets_of",
+    "step_pictures",
+]
 
 _ONE_SHELL = ("uncover", "prop", "lift off", "cover")
 
@@ -113,7 +125,7 @@ def _cover_scene(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
     return Scene(there=there, new=step.marks, names=_short([*strips, *mullions]), rings=_joints_of(step, "W"))
 
 
-def _home(step: Step) -> str:
+def home_shell(step: Step) -> str:
     """Return the shell that the picture of a step shows alone, or "" where it shows the whole."""
     if step.phase in _ONE_SHELL:
         return shell_of(step.marks[0]) if step.marks else step.assemblies[0]
@@ -122,7 +134,7 @@ def _home(step: Step) -> str:
 
 def _twinned(sheets: Sheets, step: Step) -> tuple[Shell, Step, frozenset[str]]:
     """Return the shell whose picture serves for a step, the step with its marks, and what is there before it."""
-    home = _home(step)
+    home = home_shell(step)
     twin = sheets.twins[home]
     shell = next(shell for shell in sheets.gridshell.shells if shell.mark == twin)
     number = parse_mark(twin).shell
@@ -130,9 +142,17 @@ def _twinned(sheets: Sheets, step: Step) -> tuple[Shell, Step, frozenset[str]]:
     return shell, twin_step(step, home, twin), frozenset(there)
 
 
+def _segment_pictures(sheets: Sheets, step: Step, segmentation: Segmentation) -> tuple[str, ...]:
+    """Return the pictures of a step with segments of a shell: the shell square on, and its plan where it stands."""
+    shell = next(shell for shell in sheets.gridshell.shells if shell.mark == step.assemblies[0])
+    outline = shell_outline(shell, PAGE_WIDTH, MARGIN)
+    picture = scene_svg(outline, segment_scene(shell, step, segmentation, sheets.standing[step.id]))
+    return (picture, *(foot_sections(shell, sheets.language) if step.phase == "stand" and step.marks else ()))
+
+
 def picture_key(sheets: Sheets, step: Step) -> tuple[object, ...]:
     """Return what the pictures of a step depend on: steps of shells alike have the same, and the same pictures."""
-    if not _home(step):
+    if not home_shell(step) or step.phase == "divide":
         return (step.id,)
     shell, twin, there = _twinned(sheets, step)
     return shell.mark, twin.phase, twin.marks, twin.assemblies, twin.props, there
@@ -142,8 +162,10 @@ def step_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
     """Return the SVG pictures of a step of putting together or of taking down: the large one first."""
     if step.phase in ("ridges", "open ridges") and step.assemblies in sheets.ridges:
         return ridge_pictures(sheets, step)
-    if not _home(step):
-        sections = foot_sections(sheets.gridshell.shells[0]) if step.phase in ("feet", "clear feet", "stand") else ()
+    if sheets.segmentation and (step.phase == "divide" or stood_segments(step, sheets.segmentation)):
+        return _segment_pictures(sheets, step, sheets.segmentation)
+    if not home_shell(step):
+        sections = foot_sections(sheets.gridshell.shells[0], sheets.language) if step.phase in ("feet", "clear feet", "stand") else ()
         return (site_svg(sheets, step), *sections)
     shell, step, there = _twinned(sheets, step)
     if step.phase in DOWN_PHASES:
@@ -158,7 +180,7 @@ def step_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
     if step.phase == "hoist":
         return large, elevation_svg(shell)
     straps = [strap for strap in shell.straps if strap.mark in step.marks]
-    return (large, *(strap_section_svg(shell, strap) for strap in middle_of(straps)))
+    return (large, *(strap_section_svg(shell, strap, language=sheets.language) for strap in middle_of(straps)))
 
 
 def phase_svg(sheets: Sheets, plan: Plan, step: Step) -> str:

@@ -14,7 +14,7 @@ from assembly.steps import Plan
 
 MINUTES_PER_HOUR = 60
 # A shell in slings is not left for the night.
-UNBROKEN = ("hoist", "stand", "ridges", "open ridges", "lift off", "hang", "lower")
+UNBROKEN = ("hoist", "divide", "stand", "splice", "ridges", "open ridges", "lift off", "hang", "lower")
 SCHEDULE_HEADER = (
     "number", "step", "phase", "shell", "title", "people", "minutes", "start_minute", "end_minute", "start_day",
     "end_day", "slack_minutes", "critical", "predecessors",

@@ -1,29 +1,29 @@
-"""Where the segments of a cut shell meet, in which order they stand on site, and what props each of them."""
+"""Where the segments of a cut shell meet, and in which order they stand on site."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import pairwise
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
-from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Shell
-from aag_cad.units import Floats
+from aag_cad.parts.model import Plank, Shell
 from assembly.graph import joint_of
 from assembly.segments import Segment, Segmentation
 from assembly.splices import Splice
 from assembly.tracks import tracks
 
-_HIGHEST = 16
 _PLAY = 50.0
+_STEP = 50.0
+_SAMPLES = 65
 
 
 @dataclass(frozen=True)
 class Seam:
     """Where two neighbouring segments meet: the geodesic of the cut line stays on one, the other has bare beam ends.
 
-    ``fasteners`` are the parts of the shell that join the two segments and that neither carries.
+    ``fasteners`` are the parts of the shell that join the two segments and that neither carries. ``reach`` is how far
+    one segment goes past the line into the other, mm: half of the geodesic, edge planks, and beam ends that stay whole.
     """
 
     keeper: str
@@ -31,11 +31,12 @@ class Seam:
     line: str
     splices: tuple[Splice, ...]
     fasteners: tuple[str, ...]
+    reach: float
 
     @property
     def gap(self) -> float:
-        """How far one segment is kept from the other before it is drawn in, mm: half a splice block and some play."""
-        return max((splice.length for splice in self.splices), default=0.0) / 2.0 + _PLAY
+        """How far from the other one segment is let down before it is drawn in, mm, in round figures."""
+        return _STEP * math.ceil((self.reach + _PLAY) / _STEP)
 
 
 def segments_of(segmentation: Segmentation | None, shell: str) -> tuple[Segment, ...]:
@@ -45,7 +46,7 @@ def segments_of(segmentation: Segmentation | None, shell: str) -> tuple[Segment,
 
 
 def _neighbours(shell: Shell, own: Sequence[Segment]) -> list[tuple[Segment, Segment]]:
-    pairs = list(zip(own, own[1:], strict=False))
+    pairs = list(pairwise(own))
     return [*pairs, (own[-1], own[0])] if tracks(shell).ring else pairs
 
 
@@ -54,6 +55,25 @@ def _meets(segment: Segment, joint: str, members: Sequence[str], stations: dict[
     pieces = [piece for piece in segment.pieces if piece.plank in members and (piece.plank, joint) in stations]
     on_piece = any(piece.start <= stations[piece.plank, joint] <= piece.end for piece in pieces)
     return on_piece or bool(set(members) & set(segment.parts))
+
+
+def _reach(
+    shell: Shell, line: str, cut: Sequence[Splice], fasteners: Sequence[str], stations: dict[tuple[str, str], float]
+) -> float:
+    """Return how far the two sides of a cut go past its line, mm."""
+    planks = {plank.mark: plank for plank in shell.planks}
+    geodesic = planks[line]
+    middle = geodesic.curve.point_spline(np.linspace(0.0, geodesic.curve.length, _SAMPLES))
+    found = [geodesic.blank.section.width / 2.0]
+    for splice in (splice for splice in cut if splice.kind == "plate"):
+        end = planks[splice.member].curve.point_spline(splice.cuts[0].station)
+        found.append(float(np.linalg.norm(middle - end, axis=1).min()))
+    spliced, joints = {splice.joint for splice in cut}, {joint.mark: joint for joint in shell.joints}
+    for joint in (joints[mark] for mark in dict.fromkeys(map(joint_of, fasteners)) if mark not in spliced):
+        ends: list[Plank] = [planks[mark] for mark in joint.members if mark in planks and planks[mark].upright]
+        at = [(stations[plank.mark, joint.mark], plank.blank.length) for plank in ends]
+        found += [min(station, length - station) for station, length in at]
+    return max(found)
 
 
 def seams(shell: Shell, segmentation: Segmentation | None) -> tuple[Seam, ...]:
@@ -75,8 +95,9 @@ def seams(shell: Shell, segmentation: Segmentation | None) -> tuple[Seam, ...]:
             if all(_meets(s, joint_of(mark), joints[joint_of(mark)].members, stations) for s in (lower, upper))
         )
         left = [mark for mark in left if mark not in fasteners]
+        reach = _reach(shell, line, cut, fasteners, stations)
         keeper, bare = (lower, upper) if line in lower.geodesics else (upper, lower)
-        found.append(Seam(keeper.name, bare.name, line, cut, fasteners))
+        found.append(Seam(keeper.name, bare.name, line, cut, fasteners, reach))
     return tuple(found)
 
 
@@ -101,48 +122,12 @@ def standing_order(shell: Shell, segmentation: Segmentation | None) -> Iterator[
 
 
 def _turn(away: int, count: int, ring: bool) -> tuple[int, int]:
-    """Return when a segment stands that is some places away from the first one: nearer ones before, upper ones first."""
+    """Return when a segment stands that is some places from the first one: nearer ones before, upper ones first."""
     around = (away + count // 2) % count - count // 2 if ring else away
     return abs(around), -around
-
-
-def margin_inside(plan: Floats, point: Floats) -> float:
-    """Return how far inside the convex hull of points (n, 2) a point (2,) is, mm; negative outside."""
-    try:
-        sides = ConvexHull(plan).equations
-    except QhullError:
-        return -np.inf
-    return float(-(sides[:, :2] @ point + sides[:, 2]).max())
 
 
 def foot_joints(shell: Shell, segment: Segment) -> tuple[str, ...]:
     """Return the foot joints of the geodesics of a segment."""
     own = set(segment.geodesics)
     return tuple(joint.mark for joint in shell.joints if joint.kind == "foot" and own & set(joint.members))
-
-
-def segment_props(shell: Shell, segment: Segment) -> tuple[str, ...]:
-    """Return two studs under which props hold a segment on its feet, best of its sixteen highest.
-
-    Its plumb line runs inside feet and props in plan, with most margin. A segment without feet stands on props at
-    the studs that it is slung by.
-    """
-    matrix = frame_matrix(shell.placement)
-
-    def placed(point: Sequence[float]) -> Floats:
-        return np.asarray(matrix[:3, :3] @ np.array(point) + matrix[:3, 3])
-
-    points = {joint.mark: placed(joint.point) for joint in shell.joints}
-    feet = [points[mark][:2] for mark in foot_joints(shell, segment)]
-    own = set(segment.parts)
-    studs = {stud.mark: placed(stud.frame.origin) for stud in shell.studs if stud.mark in own}
-    highest = sorted(studs, key=lambda mark: (-round(float(studs[mark][2])), mark))[:_HIGHEST]
-    if not feet or len(highest) < 2:
-        return segment.lifting.studs
-    centre = np.array(segment.centre[:2])
-
-    def worth(pair: tuple[str, ...]) -> tuple[float, float]:
-        plan = np.array([*feet, *(studs[mark][:2] for mark in pair)])
-        return round(margin_inside(plan, centre)), sum(float(studs[mark][2]) for mark in pair)
-
-    return max(combinations(highest, 2), key=worth)

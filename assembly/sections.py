@@ -6,6 +6,8 @@ import numpy as np
 
 from aag_cad.parts.model import Bolt, CrossSection, Shell
 from assembly.drawing import Style, circle, group, line, polygon, rectangle, svg, text
+from assembly.language import Language, say
+from assembly.names import figure
 
 _CUT = Style("#bdbdbd", "#000", 2.0)
 _OPEN = Style("#fff", "#000", 2.0)
@@ -21,6 +23,10 @@ def callout(x: float, y: float, to_x: float, to_y: float, words: str, size: floa
     """Yield a line from a place on a part to words at its right."""
     yield line(np.array([(to_x, to_y), (x, y)]), _THIN)
     yield group([circle((to_x, to_y), 3.0), text(words, x + 8.0, y, size, "start")], _INK)
+
+
+def _word(language: Language, key: str, **sizes: float) -> str:
+    return say(language, f"pictures.sections.{key}", **{k: figure(f"{v:g}", language) for k, v in sizes.items()})
 
 
 def _beam(middle: float, section: CrossSection, gap: float) -> str:
@@ -48,7 +54,7 @@ def _bolt(y: float, bolt: Bolt) -> str:
     return group(pieces, _INK)
 
 
-def node_section_svg(shell: Shell) -> str:
+def node_section_svg(shell: Shell, *, language: Language = "en") -> str:
     """Return the section through a crossing of two beams, drawn as if both ran the same way, at 1 : 5."""
     stud, plank = shell.studs[0], next(plank for plank in shell.planks if plank.upright)
     bolts = {bolt.mark: bolt for bolt in shell.bolts}
@@ -60,13 +66,13 @@ def node_section_svg(shell: Shell) -> str:
     items += [_beam(centre + side * lift, section, stud.across_flats) for side in (-1.0, 1.0)]
     items += [_bolt(centre - _UNIT * hole.height, bolt) for hole in stud.holes]
     right, plank_x = _AXIS + 130.0, _AXIS + flat / 2.0 + _UNIT * section.thickness / 2.0
-    items += callout(right, centre - lift, plank_x, centre - lift, "A2 upper beam")
-    items += callout(right, centre, _AXIS, centre, f"N hexagon stud {stud.length:g} mm")
-    items += callout(right, centre + lift, plank_x, centre + lift, "A1 lower beam")
+    items += callout(right, centre - lift, plank_x, centre - lift, _word(language, "upper"))
+    items += callout(right, centre, _AXIS, centre, _word(language, "stud", length=stud.length))
+    items += callout(right, centre + lift, plank_x, centre + lift, _word(language, "lower"))
     return svg(720.0, 2.0 * centre, items)
 
 
-def block_section_svg(shell: Shell) -> str:
+def block_section_svg(shell: Shell, *, language: Language = "en") -> str:
     """Return the section through a geodesic on a lower beam, at 1 : 5: coupling block, its bolt and the screw."""
     block, screw = shell.blocks[0], shell.screws[0]
     bolts = {bolt.mark: bolt for bolt in shell.bolts}
@@ -84,8 +90,9 @@ def block_section_svg(shell: Shell) -> str:
     outline = np.array([_AXIS, top]) + np.concatenate([half, half[::-1] * [-1.0, 1.0]])
     items.append(polygon(outline, _INK))
     right, plank_x = _AXIS + 210.0, _AXIS + gap / 2.0 + thick / 2.0
-    items += callout(right, top - 45.0, _AXIS, top, f"screw {screw.diameter:g} x {screw.length:g}, driven last")
-    items += callout(right, top + thick / 2.0, _AXIS + 150.0, top + thick / 2.0, "G geodesic, slides until then")
-    items += callout(right, low + 0.4 * wide, _AXIS + gap / 3.0, low + 0.4 * wide, "K coupling block")
-    items += callout(right, low + 0.9 * wide, plank_x, low + 0.9 * wide, "A1 lower beam")
+    driven = _word(language, "screw", diameter=screw.diameter, length=screw.length)
+    items += callout(right, top - 45.0, _AXIS, top, driven)
+    items += callout(right, top + thick / 2.0, _AXIS + 150.0, top + thick / 2.0, _word(language, "geodesic"))
+    items += callout(right, low + 0.4 * wide, _AXIS + gap / 3.0, low + 0.4 * wide, _word(language, "block"))
+    items += callout(right, low + 0.9 * wide, plank_x, low + 0.9 * wide, _word(language, "lower"))
     return svg(870.0, low + wide + 20.0, items)

@@ -1,4 +1,4 @@
-"""What is found when a gridshell is cut for transport: what would spare a cut, and what cannot be cut, slung or spliced."""
+"""What is found when a gridshell is cut for transport: what would spare a cut, what cannot be cut, slung or spliced."""
 
 import math
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ def _words(language: Language, key: str, **figures: object) -> str:
 
 
 def _limits(limits: Limits, language: Language) -> str:
-    room = dict(length=limits.length, width=limits.width, height=limits.height, load=limits.load)
+    room = {"length": limits.length, "width": limits.width, "height": limits.height, "load": limits.load}
     return _words(language, "limits", **room)
 
 
@@ -60,7 +60,7 @@ def wish(item: Divisible, limits: Limits, language: Language = "en") -> str:
     if pose_in(run, limits, 1.0).filling <= 1.0 + _ROUNDING:
         return load
     sizes = [
-        _words(language, "axis", key=key, size=f"{_up(size):.0f}")
+        _words(language, "axis", side=key, size=f"{_up(size):.0f}")
         for key, size in zip(("width", "height"), least_widths(run, limits), strict=True)
         if size is not None
     ]
@@ -100,7 +100,7 @@ def hopeless_finding(item: Divisible, limits: Limits, wished: str, language: Lan
         if filling < best_of.get(run.geodesics[0], (math.inf,))[0]:
             best_of[run.geodesics[0]] = filling, run, pose
     _, run, pose = max(best_of.values(), key=lambda best: best[0])
-    figures = dict(geodesic=short_mark(run.geodesics[0]), box=_words(language, "box", sizes=_sizes(pose.size)))
+    figures = {"geodesic": short_mark(run.geodesics[0]), "box": _words(language, "box", sizes=_sizes(pose.size))}
     told = _words(language, "worst", mass=f"{run.mass:.0f}", **figures)
     remedy = _words(language, "hopeless", limits=_limits(limits, language), worst=told, wish=wished)
     worst = _worst(pose, run.mass, limits)

@@ -1,6 +1,7 @@
 """Where a shell is cut so that each of its segments fits the transport: exact over all cuts along geodesics."""
 
 import math
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -10,6 +11,7 @@ import numpy as np
 
 from aag_cad.units import Vector
 from assembly.boxes import Pose, best_pose
+from assembly.errors import PlanError
 from assembly.partition import best_chain, best_ring
 from assembly.runs import Divisible, Run, run_between, run_splices
 
@@ -17,6 +19,7 @@ _ROUNDING = 1e-9
 _GRAMS = 1000.0
 _WIDEST = 4.0
 _HALVINGS = 6
+_ENDLESS = 100.0
 
 
 @dataclass(frozen=True)
@@ -43,9 +46,45 @@ class Limits:
         return self.mass if self.crane is None else min(self.mass, self.crane)
 
 
+_FORM = re.compile(r"\s*[x\u00d7]\s*", re.IGNORECASE)
+_PLACES = ("length", "width", "height", "mass", "crane")
+
+
+def limits_from(text: str, option: str = "--transport") -> Limits:
+    """Return the limits written as length x width x height in mm, load and crane in kg: ``12000x2400x2400x3000x500``.
+
+    Load and crane may be left out: then nothing limits the mass. PlanError with the option, the value and the form.
+    """
+    form = (
+        "write length x width x height in mm, then, if they limit it, the load and what the crane lifts in kg, each "
+        "more than 0: 12000x2400x2400, 12000x2400x2400x3000 or 12000x2400x2400x3000x500"
+    )
+    places = _FORM.split(text.strip())
+    if not 3 <= len(places) <= len(_PLACES):
+        raise PlanError(f"{option} {text!r}: {len(places)} numbers, allowed 3 to {len(_PLACES)}; {form}")
+    sizes: dict[str, float] = {}
+    for name, place in zip(_PLACES, places, strict=False):
+        try:
+            sizes[name] = float(place)
+        except ValueError as error:
+            raise PlanError(f"{option} {text!r}: {name} = {place!r} is no number; {form}") from error
+        if not (0.0 < sizes[name] < math.inf):
+            raise PlanError(f"{option} {text!r}: {name} = {place}, allowed more than 0; {form}")
+    return Limits(**{"mass": math.inf, **sizes})
+
+
 def pose_in(run: Run, limits: Limits, enough: float = 0.0) -> Pose:
-    """Return the pose of a run that leaves most room in the transport."""
-    return best_pose(run.corners, limits.room, enough)
+    """Return the pose of a run that leaves most room in the transport.
+
+    Where a side of the transport has no limit it counts as far longer than any other; without any limit the smallest
+    cube decides.
+    """
+    known = [size for size in limits.room if math.isfinite(size)]
+    if len(known) == len(limits.room):
+        return best_pose(run.corners, limits.room, enough)
+    far = _ENDLESS * max(known, default=float(np.ptp(run.corners, axis=0).max()))
+    length, width, height = (size if math.isfinite(size) else far for size in limits.room)
+    return best_pose(run.corners, (length, width, height), enough)
 
 
 def fits(run: Run, limits: Limits) -> bool:

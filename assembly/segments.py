@@ -1,6 +1,7 @@
 """The segments in which a gridshell travels: its shells, cut along geodesics if they must be (paper section 3.2)."""
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from aag_cad.parts.quantities import material
 from aag_cad.units import Floats, Vector, vector
 from assembly.boxes import Pose
 from assembly.language import Language
-from assembly.lifting import Brace, Lifting, braces, lifting_points
+from assembly.lifting import STIFF_GEODESICS, Brace, Lifting, braces, lifting_points, standing_props
 from assembly.runs import Divisible, PlankPiece, Run, cut_stops, divisible, run_between, run_splices
 from assembly.segment_findings import cut_finding, hopeless_finding, lifting_finding, splice_finding, wish
 from assembly.segment_search import Limits, best_stops, pose_in, segment_ends
@@ -26,10 +27,10 @@ _ROUNDING = 1e-9
 class Segment:
     """What travels in one piece, without shoes, rods, blocks, cover and blades: those are fixed on site.
 
-    ``parts`` are the marks of whole parts, ``pieces`` what it has of cut planks, ``splices`` the beams and joints whose
-    splice blocks stay on it. ``mass`` in kg, without bracing; ``timber`` of it is timber; ``centre`` of gravity and the
-    axes of ``pose`` are in vault coordinates, mm. ``over`` is what length, width, height (mm) and mass (kg) exceed the
-    transport by, negative where there is room.
+    ``parts`` are the marks of whole parts, ``pieces`` what it has of cut planks. ``mass`` in kg, without bracing;
+    ``timber`` of it is timber; ``centre`` of gravity and the axes of ``pose`` are in vault coordinates, mm. ``over`` is
+    what length, width, height (mm) and mass (kg) exceed the transport by, negative where there is room. ``props`` are
+    the studs under which a segment of a cut shell is propped wherever it stands alone on its feet.
     """
 
     name: str
@@ -37,7 +38,6 @@ class Segment:
     geodesics: tuple[str, ...]
     parts: tuple[str, ...]
     pieces: tuple[PlankPiece, ...]
-    splices: tuple[tuple[str, str], ...]
     mass: float
     timber: float
     centre: Vector
@@ -45,6 +45,7 @@ class Segment:
     over: tuple[float, float, float, float]
     lifting: Lifting
     braces: tuple[Brace, ...]
+    props: tuple[str, ...]
 
     @property
     def fits(self) -> bool:
@@ -61,8 +62,8 @@ class Segment:
 class Segmentation:
     """How a gridshell is divided: segments, splices, and the fasteners put in on site because they join segments.
 
-    ``changes`` say what a shell that is cut would need to travel whole (warnings), ``problems`` what must change because
-    it cannot be cut, slung or spliced so (errors).
+    ``changes`` are warnings: what a shell that is cut would need to travel whole; ``problems`` are errors: what must
+    change because it cannot be cut, slung or spliced so.
     """
 
     limits: Limits
@@ -81,13 +82,25 @@ def _vault_pose(pose: Pose, placement: Frame) -> Pose:
     return Pose((vector(axes[0]), vector(axes[1]), vector(axes[2])), pose.size, pose.filling)
 
 
-def _stud_points(item: Divisible, run: Run, matrix: Floats) -> dict[str, Floats]:
-    own = set(run.parts)
-    return {
-        stud.mark: matrix[:3, :3] @ np.array(stud.frame.origin) + matrix[:3, 3]
-        for stud in item.shell.studs
-        if stud.mark in own
-    }
+def _points(item: Divisible, run: Run, matrix: Floats) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Return the places (3,) of the studs of a run and of its coupling blocks, in vault coordinates."""
+    own, shell = set(run.parts), item.shell
+    studs = {stud.mark: np.array(stud.frame.origin) for stud in shell.studs if stud.mark in own}
+    held = {block.mark for block in shell.blocks} & own
+    blocks = {joint.mark: np.array(joint.point) for joint in shell.joints if joint.mark in held and joint.kind == "AG"}
+    turn, move = matrix[:3, :3], matrix[:3, 3]
+    return ({m: turn @ p + move for m, p in studs.items()}, {m: turn @ p + move for m, p in blocks.items()})
+
+
+def _feet(item: Divisible, run: Run, matrix: Floats) -> list[Floats]:
+    """Return the feet of the geodesics of a run, (3,) each."""
+    own = set(run.geodesics)
+    joints = (joint for joint in item.shell.joints if joint.kind == "foot" and own & set(joint.members))
+    return [matrix[:3, :3] @ np.array(joint.point) + matrix[:3, 3] for joint in joints]
+
+
+def _rising(marks: Iterable[str], points: Mapping[str, Floats]) -> list[str]:
+    return sorted(set(marks), key=lambda mark: (round(float(points[mark][2]), 3), mark))
 
 
 def _columns(item: Divisible, start: int, end: int, studs: dict[str, Floats]) -> dict[int, list[str]]:
@@ -99,7 +112,23 @@ def _columns(item: Divisible, start: int, end: int, studs: dict[str, Floats]) ->
         for place in item.beams[track.mark].joints if not track.edge else ():
             if place.joint in studs:
                 found[grid.bay(track.bay(place.station))].append(place.joint)
-    return {bay: sorted(set(marks), key=lambda m: (round(float(studs[m][2]), 3), m)) for bay, marks in found.items()}
+    return {bay: _rising(marks, studs) for bay, marks in found.items()}
+
+
+def _outermost(
+    item: Divisible, start: int, end: int, columns: Mapping[int, list[str]], blocks: dict[str, Floats]
+) -> tuple[list[str], list[str]]:
+    """Return the first and the last column of a run, each from the lowest to the highest joint.
+
+    A column is the studs of a bay or the coupling blocks on a geodesic.
+    """
+    grid = item.tracks
+    placed = {2 * bay + 1: columns.get(grid.bay(bay), []) for bay in range(start // 2 - 1, end // 2 + 1)}
+    for line in range((start + 1) // 2, (end + 1) // 2):
+        geodesic = item.planks[grid.lines[grid.line(2 * line) - 1]]
+        placed[2 * line] = _rising((place.joint for place in geodesic.joints if place.joint in blocks), blocks)
+    filled = [placed[at] for at in sorted(placed) if len(placed[at]) > 1]
+    return (filled[0], filled[-1]) if len(filled) > 1 else ([], [])
 
 
 def _over(pose: Pose, run: Run, limits: Limits) -> tuple[float, float, float, float]:
@@ -112,10 +141,17 @@ def _segment(item: Divisible, name: str, start: int, end: int, limits: Limits) -
     matrix = frame_matrix(shell.placement)
     centre = matrix[:3, :3] @ run.centre + matrix[:3, 3]
     pose = _vault_pose(pose_in(run, limits), shell.placement)
-    studs = _stud_points(item, run, matrix)
+    studs, blocks = _points(item, run, matrix)
     cuts = cut_stops(grid, start, end)
     sides = {grid.bay(start // 2): start % 2 == 0} if start in cuts else {}
     sides |= {grid.bay(end // 2 - 1): end % 2 == 1} if end in cuts else {}
+    lifting = lifting_points(studs, centre)
+    if not lifting.studs:
+        lifting = lifting_points(studs | blocks, centre)
+    props = standing_props(_feet(item, run, matrix), studs, centre) or lifting.studs
+    columns = _columns(item, start, end, studs)
+    few = len(run.geodesics) < STIFF_GEODESICS
+    ends = _outermost(item, start, end, columns, blocks) if few else ([], [])
     steel = sum(item.masses[mark] for mark in run.parts if mark in item.small and material(item.small[mark]) == "steel")
     return Segment(
         name,
@@ -123,14 +159,14 @@ def _segment(item: Divisible, name: str, start: int, end: int, limits: Limits) -
         run.geodesics,
         run.parts,
         run.pieces,
-        run.splices,
         run.mass,
         run.mass - steel,
         vector(centre),
         pose,
         _over(pose, run, limits),
-        lifting_points(studs, centre),
-        braces(studs, _columns(item, start, end, studs), sides, len(run.geodesics)),
+        lifting,
+        braces(studs | blocks, columns, sides, ends),
+        props if cuts else (),
     )
 
 

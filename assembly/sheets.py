@@ -22,8 +22,10 @@ from aag_cad.parts.model import (
 )
 from aag_cad.units import Floats
 from assembly.kit import shell_kit
+from assembly.language import Language
 from assembly.outline import Outline, ridge_outline, shell_outline, vault_outline
 from assembly.ranges import short_mark
+from assembly.segments import Segmentation
 from assembly.steps import DOWN_PHASES, Plan, Step
 
 PAGE_WIDTH = 1800.0
@@ -49,6 +51,8 @@ class Sheets:
     ridges: dict[tuple[str, ...], Outline]
     before: dict[str, frozenset[str]]
     standing: dict[str, frozenset[str]]
+    segmentation: Segmentation | None
+    language: Language
 
 
 def _alike(one: Shell, other: Shell) -> bool:
@@ -118,16 +122,25 @@ def _still_there(plan: Plan, gridshell: Gridshell) -> dict[str, frozenset[str]]:
     return found
 
 
-def _standing(plan: Plan, gridshell: Gridshell, down: bool) -> dict[str, frozenset[str]]:
-    """Return for each step id the planks of the shells that stand on the site before it."""
+def _segment_planks(segmentation: Segmentation | None) -> dict[str, set[str]]:
+    """Return the planks of which each segment has the whole or a piece, by the id of the step that sets it down."""
+    listed = segmentation.segments if segmentation else ()
+    return {f"site.stand.{s.name}": {*s.parts, *(piece.plank for piece in s.pieces)} for s in listed}
+
+
+def _standing(
+    plan: Plan, gridshell: Gridshell, segmentation: Segmentation | None, down: bool
+) -> dict[str, frozenset[str]]:
+    """Return for each step id the planks of the shells or segments that stand on the site before it."""
     planks = {shell.mark: {plank.mark for plank in shell.planks} for shell in gridshell.shells}
+    segments = _segment_planks(segmentation)
     standing = set[str]().union(*planks.values()) if down else set[str]()
     found = {}
     for step in plan.steps:
         found[step.id] = frozenset(standing)
         moved = {mark for assembly in step.assemblies for mark in planks.get(assembly, ())}
         if step.phase == "stand":
-            standing |= moved
+            standing |= moved & segments.get(step.id, moved)
         if step.phase == "lift off":
             standing -= moved
     return found
@@ -148,8 +161,11 @@ def ridge_planks(gridshell: Gridshell, pair: Sequence[str]) -> tuple[str, ...]:
     return min((gap, ends) for ends, gap in gaps.items())[1] if gaps else ()
 
 
-def sheets_of(plan: Plan, gridshell: Gridshell) -> Sheets:
-    """Return all outlines, drawn once for all steps of a plan of putting together or of taking down."""
+def sheets_of(plan: Plan, gridshell: Gridshell, segmentation: Segmentation | None = None) -> Sheets:
+    """Return all outlines, drawn once for all steps of a plan of putting together or of taking down.
+
+    ``segmentation`` is needed where shells stand in segments.
+    """
     twins = shell_twins(gridshell)
     firsts = [shell for shell in gridshell.shells if twins[shell.mark] == shell.mark]
     down = any(step.phase in DOWN_PHASES for step in plan.steps)
@@ -165,5 +181,7 @@ def sheets_of(plan: Plan, gridshell: Gridshell) -> Sheets:
             if step.phase in ("ridges", "open ridges") and (pair := ridge_planks(gridshell, step.assemblies))
         },
         before=_still_there(plan, gridshell) if down else _in_place(plan, gridshell),
-        standing=_standing(plan, gridshell, down),
+        standing=_standing(plan, gridshell, segmentation, down),
+        segmentation=segmentation,
+        language=plan.language,
     )

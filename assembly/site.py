@@ -17,7 +17,7 @@ from assembly.language import Language, say
 from assembly.locking import LockingOrder
 from assembly.process import EVERYONE, PAIR, Work
 from assembly.ranges import joined_ranges, short_mark
-from assembly.seams import Seam, foot_joints, seams, segment_props, segments_of, standing_order
+from assembly.seams import Seam, foot_joints, seams, segments_of, standing_order
 from assembly.segment_sheet import brace_words
 from assembly.segments import Segment, Segmentation
 from assembly.splices import Splice
@@ -59,26 +59,25 @@ def _fasteners(language: Language, marks: Sequence[str]) -> str:
 
 
 def _seam_extras(language: Language, seam: Seam, chapter: str) -> Iterator[str]:
-    """Yield what is taken out at a seam (``divide``) or put in again (``splice``): bolts of splices, fasteners."""
-    for kind, name in (("block", "blocks"), ("plate", "plates")):
-        cut = [splice for splice in seam.splices if splice.kind == kind]
-        if cut:
-            each = cut[0].bolts // 2
-            yield say(
-                language,
-                f"site.{chapter}.{name}",
-                line=short_mark(seam.line),
-                segment=seam.bare,
-                count=sum(splice.bolts // 2 for splice in cut),
-                each=each,
-                diameter=cut[0].diameter,
-                beams=joined_ranges([splice.member for splice in cut]),
-                joints=joined_ranges([splice.joint for splice in cut if splice.joint]),
-            )
+    """Yield what is taken out at a seam (``divide``) or put in again (``splice``): splices with bolts, fasteners."""
+    for splice in seam.splices:
+        side = "inside" if parse_mark(splice.member).family == "A1" else "outside"
+        yield say(
+            language,
+            f"site.{chapter}.{splice.kind}",
+            line=short_mark(splice.line),
+            beam=short_mark(splice.member),
+            joint=short_mark(splice.joint) if splice.joint else "",
+            bolts=splice.bolts,
+            diameter=splice.diameter,
+            length=splice.length,
+            side=say(language, f"site.{chapter}.{side}"),
+        )
     if seam.fasteners:
         joints = joined_ranges(tuple(dict.fromkeys(map(joint_of, seam.fasteners))))
         told = _fasteners(language, seam.fasteners)
         yield say(language, f"site.{chapter}.fasteners", line=short_mark(seam.line), fasteners=told, joints=joints)
+    yield say(language, f"site.{chapter}.lash", line=short_mark(seam.line), keeper=seam.keeper)
 
 
 def _brace_extras(language: Language, segment: Segment, chapter: str) -> Iterator[str]:
@@ -135,7 +134,7 @@ def divide_works(shell: Shell, segmentation: Segmentation | None = None, languag
         after=(f"{shell.mark}.tighten",),
         assemblies=(shell.mark,),
         least_crew=EVERYONE,
-        props=tuple(dict.fromkeys(mark for segment in own for mark in segment_props(shell, segment))),
+        props=tuple(dict.fromkeys(mark for segment in own for mark in segment.props)),
         extras=(*braces, *(extra for seam in cuts for extra in _seam_extras(language, seam, "divide"))),
         notes=(say(language, "site.divide.order", lines=lines),),
     )
@@ -154,10 +153,6 @@ def _prop_notes(site: _Site, shell: Shell) -> tuple[str, ...]:
         return ()
     at = short_mark(order.released.at)
     return (site.say("stand.props", sag=order.released.displacement, joint=at),)
-
-
-def _carried(segment: Segment) -> set[str]:
-    return {*segment.parts, *(joint for _, joint in segment.splices)}
 
 
 def _standing_notes(site: _Site, segment: Segment, beside: Sequence[Seam], others: Sequence[str]) -> tuple[str, ...]:
@@ -186,7 +181,7 @@ def _segment_works(site: _Site, shell: Shell, kit: Kit, feet: str) -> Iterator[W
     order = list(standing_order(shell, site.segmentation))
     own = [segment for segment, _ in order]
     bolts, crown = _split_standing(shell, kit, own), _crown_props(site, shell)
-    under = {joint: next((s.name for s in own if joint in _carried(s)), own[0].name) for joint in crown}
+    under = {joint: next((s.name for s in own if joint in s.parts), own[0].name) for joint in crown}
     open_seams = Counter(name for _, beside in order for seam in beside for name in (seam.keeper, seam.bare))
     named = {segment.name: segment for segment in own}
     before: tuple[str, ...] = (feet, f"{shell.mark}.divide")
@@ -202,7 +197,7 @@ def _segment_works(site: _Site, shell: Shell, kit: Kit, feet: str) -> Iterator[W
             marks=standing,
             assemblies=(shell.mark,),
             least_crew=EVERYONE,
-            props=tuple(dict.fromkeys((*segment_props(shell, segment), *held))),
+            props=tuple(dict.fromkeys((*segment.props, *held))),
             notes=(*notes, *(_prop_notes(site, shell) if held else ())),
         )
         yield stand
@@ -243,9 +238,23 @@ def _standing(site: _Site, shell: Shell, feet: str) -> tuple[Work, ...]:
     return (work,)
 
 
+def _props_off(site: _Site, works: tuple[Work, ...]) -> tuple[Work, ...]:
+    """Return the standing of a cut shell that meets no other: its segments' props go once all are joined.
+
+    Props that the finished shell needs by its locking order stay.
+    """
+    crown = {prop.joint for order in site.locking.values() for prop in order.released.props}
+    props = tuple(dict.fromkeys(joint for work in works for joint in work.props if joint not in crown))
+    if len(works) == 1 or not props:
+        return works
+    off = site.say("ridge.props_off", joints=joined_ranges(props))
+    return (*works[:-1], replace(works[-1], extras=(*works[-1].extras, off)))
+
+
 def _ridges(site: _Site, stood: dict[str, tuple[Work, ...]]) -> Iterator[Work]:
     """Yield the joining of each pair of shells, with their blades and the fasteners of these; props off at the end."""
-    gridshell, before = site.gridshell, ()
+    gridshell = site.gridshell
+    before: tuple[str, ...] = ()
     pairs = ridge_pairs(gridshell)
     props = {mark: tuple(joint for work in works for joint in work.props) for mark, works in stood.items()}
     every = tuple(dict.fromkeys(joint for joints in props.values() for joint in joints))
@@ -268,7 +277,6 @@ def _ridges(site: _Site, stood: dict[str, tuple[Work, ...]]) -> Iterator[Work]:
             least_crew=2 * PAIR,
             props=tuple(dict.fromkeys((*props[a], *props[b]))),
             extras=(site.say("ridge.props_off", joints=joined_ranges(every)),) if last and every else (),
-            notes=(site.say("ridge.props_stay"),) if every and not last else (),
         )
         yield work
         before = (work.id,)
@@ -296,8 +304,8 @@ def site_works(
         least_crew=PAIR,
     )
     stood = {shell.mark: _standing(site, shell, feet.id) for shell in gridshell.shells}
-    standing = tuple(work for works in stood.values() for work in works)
     ridges = tuple(_ridges(site, stood))
+    standing = tuple(work for works in stood.values() for work in (works if ridges else _props_off(site, works)))
     last = tuple(work.id for work in ridges[-1:] or (works[-1] for works in stood.values()))
     covering = tuple(
         Work(f"site.cover.{mark}", "cover", site.say("cover.title", shell=mark), last, kit.cover, least_crew=PAIR)

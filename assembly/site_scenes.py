@@ -47,10 +47,14 @@ def _site_scene(gridshell: Gridshell, step: Step, there: frozenset[str]) -> Scen
         case "feet" | "clear feet":
             blocks = tuple(footing.mark for shell in gridshell.shells for footing in shell.footings)
             return Scene(new=grounded, numbers=numbers_of(blocks))
-        case "stand" | "prop" | "lift off" | "splice":
+        case "stand":
             dots = tuple(foot for mark in moved for foot in feet[mark])
             worked_on = [plank for mark in moved for plank in planks[mark]]
-            return Scene(there=there | grounded, worked_on=worked_on, dots=dots, numbers=numbers_of(dots))
+            return Scene(there=there | grounded, worked_on=worked_on, dots=dots, numbers=numbers_of(dots),
+                         props=step.props)  # fmt: skip
+        case "ridges" | "open ridges":
+            facing = ridge_planks(gridshell, step.assemblies)
+            return Scene(there=there | grounded, worked_on=facing, new=step.marks, props=step.props)
         case _:
             return Scene(there={mark for listed in planks.values() for mark in listed} | grounded)
 
@@ -71,14 +75,14 @@ def site_svg(sheets: Sheets, step: Step) -> str:
     return svg(sheet.width, sheet.height, items)
 
 
-def foot_sections(shell: Shell, count: int = 2, language: Language = "en") -> tuple[str, ...]:
+def foot_sections(shell: Shell, language: Language, count: int = 2) -> tuple[str, ...]:
     """Return sections through the first feet of a shell: their shoes lie on either side of the planks."""
     shoes = shell.shoes[:count]
-    return tuple(foot_section_svg(shell, shoe, named=shoe is shoes[-1]) for shoe in shoes)
+    return tuple(foot_section_svg(shell, shoe, named=shoe is shoes[-1], language=language) for shoe in shoes)
 
 
 def ridge_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
-    """Return a ridge from above, all shells there, with the blades of a step; and a section through a blade."""
+    """Return a ridge from above with the blades of a step, a section through a blade, and where the ridge is."""
     gridshell = sheets.gridshell
     outline, planks = sheets.ridges[step.assemblies], ridge_planks(gridshell, step.assemblies)
     blades = [blade for blade in gridshell.blades if blade.mark in step.marks]
@@ -90,7 +94,8 @@ def ridge_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
         numbers={blade.mark: blade.mark for blade in blades},
     )
     picture = svg(outline.width, outline.height, scene_items(outline, scene))
-    return (picture, *(blade_section_svg(gridshell, blade) for blade in middle_of(blades)))
+    cut = (blade_section_svg(gridshell, blade, language=sheets.language) for blade in middle_of(blades))
+    return (picture, *cut, site_svg(sheets, step))
 
 
 def _flat_line(shell: Shell, outline: Outline) -> tuple[np.ndarray, float]:

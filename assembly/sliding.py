@@ -1,8 +1,8 @@
-"""Whether a plank can be slid in along its own axis between others that lie: its bends and its free way on the floor."""
+"""Whether a plank can be slid in along its own axis between others that lie: its bends and its free way."""
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal, TypeAlias
@@ -11,6 +11,7 @@ import numpy as np
 
 from aag_cad.units import Floats
 from assembly.laying_units import PARALLEL, Crossing, Meeting, Unit
+from assembly.walking import best_plane
 
 End: TypeAlias = Literal["start", "end"]
 Why: TypeAlias = Literal["upright", "kept", "unknown", "radius", "length"]
@@ -88,14 +89,12 @@ def smallest_bend(
     return smallest
 
 
-def _floor(units: Sequence[Unit]) -> Floats:
-    """Return the lines of units of one shell on the floor, (n, 2, 2) mm: the plane nearest to all their ends."""
+def _floor(units: Sequence[Unit], absent: Collection[str]) -> Floats:
+    """Return the lines of units of one shell on the floor, (n, 2, 2) mm: in the plane nearest to all that lie."""
     points = np.array([(unit.start, unit.end) for unit in units], dtype=np.float64)
-    if np.ptp(points[..., 2]) <= SAME:
-        return points[..., :2]
-    centred = points - points.mean(axis=(0, 1))
-    axes = np.linalg.svd(centred.reshape(-1, 3), full_matrices=False)[2][:2]
-    return np.asarray(centred @ axes.T)
+    lying = [unit.mark not in absent for unit in units]
+    axes = best_plane((points[lying] if any(lying) else points).reshape(-1, 3))[:2]
+    return np.asarray(points @ axes.T)
 
 
 def _cross(a: Floats, b: Floats) -> Floats:
@@ -154,9 +153,13 @@ def _hindrances(unit: Unit, free: float, radius: float | None) -> Iterable[Hindr
 
 
 def slidings(
-    wanted: Iterable[str], units: Mapping[str, Unit], crossings: Iterable[Crossing], meetings: Iterable[Meeting]
+    wanted: Iterable[str],
+    units: Mapping[str, Unit],
+    crossings: Iterable[Crossing],
+    meetings: Iterable[Meeting],
+    absent: Collection[str],
 ) -> dict[str, Sliding]:
-    """Return how each of the wanted units can be slid in when all other units of its shell lie, and what hinders it.
+    """Return how each of the wanted units can be slid in when all others of its shell lie but those that are absent.
 
     A unit that it crosses at a joint is no hindrance on the floor: it passes over or under it.
     """
@@ -167,17 +170,19 @@ def slidings(
         passed[crossing.lower].append(crossing)
         passed[crossing.upper].append(crossing)
     for meeting in meetings:
-        for mark in meeting.units:
-            met[mark].append(meeting)
+        one, other = meeting.units
+        met[one] += [meeting] if other not in absent else []
+        met[other] += [meeting] if one not in absent else []
     shells: dict[str, list[Unit]] = defaultdict(list)
     for unit in units.values():
         shells[unit.shell].append(unit)
-    floors = {shell: _floor(listed) for shell, listed in shells.items()}
+    floors = {shell: _floor(listed, absent) for shell, listed in shells.items()}
+    lying = {shell: np.array([unit.mark not in absent for unit in listed]) for shell, listed in shells.items()}
     rows = {unit.mark: i for listed in shells.values() for i, unit in enumerate(listed)}
     found = {}
     for mark in wanted:
-        unit, lines = units[mark], floors[units[mark].shell]
-        others = np.ones(len(lines), dtype=bool)
+        unit = units[mark]
+        lines, others = floors[unit.shell], lying[unit.shell].copy()
         partners = {m for at in passed[mark] for m in (at.lower, at.upper) if units[m].shell == unit.shell}
         others[[rows[m] for m in sorted({mark, *partners})]] = False
         end, free = _way(unit, _beyond(lines[rows[mark]], lines[others]), met[mark])

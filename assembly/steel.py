@@ -12,6 +12,8 @@ from aag_cad.parts.model import Blade, Bolt, FlatBar, FoldedPlate, Frame, Gridsh
 from aag_cad.parts.plates import plate_rings
 from aag_cad.units import Floats, vector
 from assembly.drawing import CHARACTER, Style, line, path, polygon, svg
+from assembly.language import Language, say
+from assembly.names import figure
 from assembly.pieces import Flat
 from assembly.sections import callout
 
@@ -22,11 +24,16 @@ _CONCRETE = Style("#d0d0d0", "#000", 1.5)
 _GROUND = Style("none", "#000", 2.5, "14 8")
 _UNIT = 1.6
 _SIZE = 34.0
-_WORDS = 22.0 * CHARACTER * _SIZE
+_CHARACTERS = 22
 _DEPTH = 140.0
 _ALONG = 180.0
 _ROOM = 75.0
 _NEAR = np.eye(4)
+
+
+def _word(language: Language, key: str, mark: str = "", **sizes: float) -> str:
+    told = {name: figure(f"{size:g}", language) for name, size in sizes.items()}
+    return say(language, f"pictures.steel.{key}", mark=mark, **told)
 
 
 def _in_frame(frame: Frame) -> Flat:
@@ -90,7 +97,8 @@ def _sheet(items: Sequence[str], points: Floats, words: Sequence[tuple[Floats, s
     low, high = points.min(axis=0) - 12.0, points.max(axis=0) + 12.0
     moved = f'<g transform="translate({-low[0]:.1f} {-low[1]:.1f})">{"".join(items)}</g>'
     width, height = (high - low).tolist()
-    reach = width + (_WORDS if words else 0.0)
+    longest = max([_CHARACTERS, *(len(text) + 2 for _, text in words)]) if words else 0
+    reach = width + longest * CHARACTER * _SIZE
     order = sorted(range(len(words)), key=lambda i: float(words[i][0][1]))
     told: list[str] = []
     for place, i in enumerate(order):
@@ -104,7 +112,7 @@ def _members(shell: Shell, joint: Joint) -> list[Plank]:
     return [planks[mark] for mark in joint.members if mark in planks]
 
 
-def foot_section_svg(shell: Shell, shoe: Shoe, named: bool) -> str:
+def foot_section_svg(shell: Shell, shoe: Shoe, named: bool, *, language: Language = "en") -> str:
     """Return the section through a foot across the edge of the shell, outside at the right, at 1 : 6.
 
     ``named`` says whether words name its parts.
@@ -130,16 +138,19 @@ def foot_section_svg(shell: Shell, shoe: Shoe, named: bool) -> str:
         line(np.array([(top[0] - side - 60.0, top[1]), (top[0] + side + 60.0, top[1])]), _GROUND),
     ]
     words = [
-        (timber[0].mean(axis=0), "G geodesic"),
-        (timber[1].mean(axis=0), "E bottom plank"),
-        (upright, f"F shoe, {shoe.plate.thickness:g} mm"),
-        (flat(np.array([rod.frame.origin]))[0] - [0.0, _UNIT * rod.nuts[1]], f"M{rod.diameter:g} rod, two nuts"),
-        (block[1:3].mean(axis=0), "C concrete block"),
+        (timber[0].mean(axis=0), _word(language, "geodesic")),
+        (timber[1].mean(axis=0), _word(language, "bottom")),
+        (upright, _word(language, "shoe", thick=shoe.plate.thickness)),
+        (
+            flat(np.array([rod.frame.origin]))[0] - [0.0, _UNIT * rod.nuts[1]],
+            _word(language, "rod", diameter=rod.diameter),
+        ),
+        (block[1:3].mean(axis=0), _word(language, "footing")),
     ]
     return _sheet(items, np.concatenate([block, *timber, plate]), words if named else [])
 
 
-def strap_section_svg(shell: Shell, strap: Strap) -> str:
+def strap_section_svg(shell: Shell, strap: Strap, *, language: Language = "en") -> str:
     """Return the section along a strap: end of the geodesic, edge plank, bolts; outside above, at 1 : 6."""
     joint = next(joint for joint in shell.joints if joint.mark == strap.mark)
     geodesic, edge = _members(shell, joint)
@@ -154,18 +165,18 @@ def strap_section_svg(shell: Shell, strap: Strap) -> str:
     steel, middle = flat(_band(strap, 0.0, strap.curve.length)), strap.curve.length / 2.0
     items = [*(polygon(outline, _TIMBER) for outline in timber), polygon(steel, _STEEL), *_bolt_items(bolts, flat)]
     words = [
-        (timber[0].mean(axis=0), "G geodesic"),
-        (timber[1].mean(axis=0), "E edge plank"),
+        (timber[0].mean(axis=0), _word(language, "geodesic")),
+        (timber[1].mean(axis=0), _word(language, "edge")),
         (
             flat(_band(strap, middle, middle))[0],
-            f"R strap, {strap.blank.section.thickness:g} mm",
+            _word(language, "strap", thick=strap.blank.section.thickness),
         ),
     ]
     reach = np.array([(0.0, -_ROOM), (0.0, _ROOM)])
     return _sheet(items, np.concatenate([*timber, steel, reach]), words)
 
 
-def blade_section_svg(gridshell: Gridshell, blade: Blade) -> str:
+def blade_section_svg(gridshell: Gridshell, blade: Blade, *, language: Language = "en") -> str:
     """Return the section across a ridge at a blade, at 1 : 6."""
     joint = next(joint for joint in gridshell.joints if joint.mark == blade.mark)
     planks = {plank.mark: (plank, shell.placement) for shell in gridshell.shells for plank in shell.planks}
@@ -175,6 +186,7 @@ def blade_section_svg(gridshell: Gridshell, blade: Blade) -> str:
     plate = _plate(blade.plate)
     items = [*(polygon(outline, _TIMBER) for outline in timber), polygon(plate, _STEEL), *_bolt_items(bolts, flat)]
     words = [(outline.mean(axis=0), mark) for outline, mark in zip(timber, marks, strict=True)]
-    words.append((plate[len(plate) // 4], f"{blade.mark} blade, {blade.plate.thickness:g} mm"))
+    told = _word(language, "blade", mark=blade.mark, thick=blade.plate.thickness)
+    words.append((plate[len(plate) // 4], told))
     reach = np.array([(0.0, -_ROOM), (0.0, _ROOM)])
     return _sheet(items, np.concatenate([*timber, plate, reach]), words)

@@ -5,6 +5,7 @@ to the middle of its line and walks back; studs are carried along, and reached o
 floor, (n, 2) mm.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -24,7 +25,8 @@ STACK_PACE = 1000.0
 # Coordinates are rounded to this many decimals of a mm, so that points that are level stay so on every machine.
 _DECIMALS = 3
 _ONE_LINE = 1e-9
-_ROW_HEIGHTS = (0.5, 3.5)
+_SAME = 1e-3
+_ROW_HEIGHTS = (0.5, 1.5, 3.5)
 
 
 @dataclass(frozen=True)
@@ -169,38 +171,36 @@ def _bands(values: Floats, others: Floats, height: float) -> tuple[tuple[int, ..
 def alternated(rows: Sequence[Sequence[int]], points: Floats) -> tuple[tuple[int, ...], ...]:
     """Return whole rows in their order, each forwards or backwards so that the path along all of them is shortest.
 
-    The first row stays as it is if that is no longer. Exact: the best way up to each end of each row is kept.
+    The first row stays as it is if that is no longer. Exact: the best way on from each end of each row is known, from
+    the last row back to the first.
     """
-    if not rows:
-        return ()
 
     def step(a: int, b: int) -> float:
-        return float(np.hypot(*(points[a] - points[b])))
+        return math.dist(points[a], points[b])
 
-    ways = (tuple(rows[0]), tuple(rows[0][::-1]))
-    costs, before = [0.0, 0.0], list[tuple[int, int]]()
-    for row, above in pairwise(rows):
-        leave, enter = (row[-1], row[0]), (above[0], above[-1])
-        totals = [[costs[i] + step(leave[i], enter[j]) for i in (0, 1)] for j in (0, 1)]
+    turns, ahead = list[tuple[int, int]](), (0.0, 0.0)
+    for row, above in pairwise(rows[::-1]):
+        ends = enumerate((row[0], row[-1]))
+        ways = [(step(above[-1], enter) + ahead[j], step(above[0], enter) + ahead[j]) for j, enter in ends]
+        totals = list(zip(*ways, strict=True))
         # A way that is not shorter by 1 um is no better: rounding must not turn the rows.
-        chosen = [int(total[1] < total[0] - 1e-3) for total in totals]
-        before.append((chosen[0], chosen[1]))
-        costs = [totals[0][chosen[0]], totals[1][chosen[1]]]
-    way = int(costs[1] < costs[0] - 1e-3)
+        chosen = [int(total[1] < total[0] - _SAME) for total in totals]
+        turns.append((chosen[0], chosen[1]))
+        ahead = totals[0][chosen[0]], totals[1][chosen[1]]
+    way = int(ahead[1] < ahead[0] - _SAME)
     found = []
-    for k in range(len(rows) - 1, -1, -1):
-        ways = (tuple(rows[k]), tuple(rows[k][::-1]))
-        found.append(ways[way])
-        way = before[k - 1][way] if k else way
-    return tuple(found[::-1])
+    for row in rows:
+        found.append(tuple(row[::-1] if way else row))
+        way = turns.pop()[way] if turns else way
+    return tuple(found)
 
 
 def serpentine(points: Floats) -> tuple[tuple[int, ...], ...]:
-    """Return points (n, 2) in rows or in columns, walked to and fro: the shortest of four such ways.
+    """Return points (n, 2) in rows or in columns, walked to and fro: the shortest of six such ways.
 
     Rows and columns are as high as half the usual distance from a point to its nearest, which keeps the rows of a
-    regular pattern apart, or seven times that, which suits scattered points better (strips of width 1.7 over the root
-    of their density: Daganzo 1984).
+    regular pattern apart, or three times that, which takes two rows of a rhombic pattern in zigzag, or seven times,
+    which suits scattered points (strips of width 1.7 over the root of their density: Daganzo 1984).
     """
     if len(points) < 2:
         return tuple((i,) for i in range(len(points)))
@@ -210,7 +210,7 @@ def serpentine(points: Floats) -> tuple[tuple[int, ...], ...]:
         for axis in (1, 0):
             rows = alternated(_bands(points[:, axis], points[:, 1 - axis], share * spacing), points)
             long = path_length(points[[i for row in rows for i in row]])
-            if best is None or long < best[0] - 1e-3:
+            if best is None or long < best[0] - _SAME:
                 best = long, rows
     assert best is not None
     return best[1]

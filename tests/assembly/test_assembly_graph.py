@@ -1,6 +1,6 @@
 """The graph of parts and joints holds the whole gridshell, wherever its shells stand."""
 
-from collections import Counter
+from collections import Counter, defaultdict
 from dataclasses import replace
 
 import networkx as nx
@@ -27,7 +27,7 @@ def test_every_part_is_a_node_and_nothing_else(gridshell: Gridshell, graph: "nx.
 
 def test_every_joint_of_two_parts_or_more_is_among_the_edges(gridshell: Gridshell, graph: "nx.MultiGraph[str]") -> None:
     wanted = {joint.mark: joint.kind for joint in all_joints(gridshell)}
-    found = {edge[2]: graph.edges[edge]["kind"] for edge in graph.edges(keys=True)}
+    found = {edge[2]: graph.edges[edge]["joint_kind"] for edge in graph.edges(keys=True)}
     assert found == wanted
 
 
@@ -36,6 +36,76 @@ def test_a_stud_is_tied_to_four_planks_and_four_bolts(gridshell: Gridshell, grap
         for stud in shell.studs:
             kinds = Counter(graph.nodes[other]["kind"] for other in graph.neighbors(stud.mark))
             assert kinds == {"plank": 4, "bolt": 4}
+
+
+def test_edges_are_keyed_by_their_joint_and_say_how_its_parts_are_tied(graph: "nx.MultiGraph[str]") -> None:
+    found: dict[str, set[str]] = defaultdict(set)
+    for _, _, key, edge in graph.edges(keys=True, data=True):
+        assert key == edge["joint"]
+        found[edge["joint_kind"]].add(edge["kind"])
+    assert found == {
+        "AA": {"crossing", "bolted"},
+        "AG": {"crossing", "coupled", "screwed", "bolted"},
+        "boundary": {"crossing", "coupled", "screwed", "bolted"},
+        "foot": {"crossing", "bolted"},
+        "footing": {"seated"},
+        "ridge": {"crossing", "bolted"},
+        "blade": {"bladed", "bolted"},
+        "cover": {"screwed"},
+    }
+
+
+def test_at_a_block_two_planks_are_coupled_and_a_third_is_screwed_on(
+    gridshell: Gridshell, graph: "nx.MultiGraph[str]"
+) -> None:
+    joint = next(joint for joint in gridshell.shells[0].joints if joint.kind == "AG")
+    tied = {other: graph.edges[joint.mark, other, joint.mark]["kind"] for other in graph.neighbors(joint.mark)}
+    planks = [mark for mark in joint.members if mark != joint.mark]
+    expected = {mark: "coupled" if mark[-1] in "LR" else "screwed" for mark in planks}
+    expected |= {mark: "bolted" if "-B" in mark else "screwed" for mark in joint.fasteners}
+    assert {mark: tied[mark] for mark in expected} == expected
+
+
+def test_planks_lie_over_planks_of_a_lower_layer_where_their_curves_pass(
+    gridshell: Gridshell, graph: "nx.MultiGraph[str]"
+) -> None:
+    points = {joint.mark: np.array(joint.point) for shell in gridshell.shells for joint in shell.joints}
+    planks = {plank.mark: plank for shell in gridshell.shells for plank in shell.planks}
+    count = 0
+    for a, b, edge in graph.edges(data=True):
+        if edge["kind"] != "crossing" or not edge["above"]:
+            continue
+        upper, lower = (a, b) if edge["above"] == a else (b, a)
+        assert graph.nodes[lower]["layer"] < graph.nodes[upper]["layer"]
+        for mark, station in ((lower, edge["below_mm"]), (upper, edge["above_mm"])):
+            # 56 mm below or above the joint's point and, beside the gap of a beam, 18 mm aside at 30 degrees or more.
+            gap = planks[mark].curve.point_spline(station) - points[edge["joint"]]
+            assert float(np.linalg.norm(gap)) < 70.0
+        count += 1
+    # Four pairs of planks at a stud, two at a block.
+    kinds = Counter(joint.kind for shell in gridshell.shells for joint in shell.joints)
+    assert count == 4 * kinds["AA"] + 2 * (kinds["AG"] + kinds["boundary"])
+
+
+def test_planks_that_meet_end_to_end_lie_on_neither(graph: "nx.MultiGraph[str]") -> None:
+    met = [edge["joint_kind"] for _, _, edge in graph.edges(data=True) if edge.get("above") == ""]
+    assert set(met) == {"foot", "ridge"}
+
+
+def test_only_planks_are_laid_and_they_say_how_they_lie(gridshell: Gridshell, graph: "nx.MultiGraph[str]") -> None:
+    radius = gridshell.timber.min_bending_radius
+    for shell in gridshell.shells:
+        matrix = frame_matrix(shell.placement)
+        for plank in shell.planks:
+            node, section = graph.nodes[plank.mark], plank.blank.section
+            assert node["upright"] == (plank.family in ("A1", "A2"))
+            assert node["depth_mm"] == (section.width if node["upright"] else section.thickness)
+            assert node["min_radius_mm"] == radius
+            for name, point in (("start", plank.curve.points[0]), ("end", plank.curve.points[-1])):
+                # One rotation and shift of points at 10 m: rounding only.
+                np.testing.assert_allclose(node[name], (matrix @ [*point, 1.0])[:3], atol=1e-6)
+    laid = {mark for mark in graph if "start" in graph.nodes[mark]}
+    assert laid == {plank.mark for shell in gridshell.shells for plank in shell.planks}
 
 
 def test_a_blade_ties_two_ridge_planks_and_a_foot_hangs_on_its_shoe(

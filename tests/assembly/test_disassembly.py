@@ -9,6 +9,7 @@ import pytest
 
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.parts.model import Blank, CrossSection, Gridshell, Plank, Shell, all_parts
+from assembly.control import prop_points, sling_points
 from assembly.disassembly import disassembly_of, stored_energy
 from assembly.disassembly_check import check_disassembly
 from assembly.errors import PlanError
@@ -74,6 +75,34 @@ def test_screws_come_out_while_the_shell_hangs_and_before_it_is_lowered(down: Pl
     for step in out:
         assert "S1.down.hang" in before(down, step.id)
         assert step.id in before(down, "S1.down.lower")
+
+
+def test_a_shell_bears_on_props_from_before_its_ridges_open_until_it_is_lowered(
+    down: Plan, gridshell: Gridshell
+) -> None:
+    """Two rows along the ridges, from beside the crown down, and one across the middle; no sling hangs on a prop."""
+    for shell in gridshell.shells:
+        props, joints = prop_points(shell), {joint.mark: joint for joint in shell.joints}
+        assert len(set(props)) == len(props) == 9
+        crown = max(joint.point[2] for joint in shell.joints if joint.kind == "boundary")
+        assert max(joints[mark].point[2] for mark in props) == crown
+        assert not set(props) & set(sling_points(shell))
+        for step in down.steps:
+            told = [mark for mark in step.props if mark.startswith(shell.mark)]
+            works = step.shell == shell.mark or (not step.shell and shell.mark in step.assemblies)
+            bears = step.phase in (
+                "prop", "open ridges", "lift off", "hang", "release geodesics", "pull edge planks", "lower"
+            )  # fmt: skip
+            assert told == (list(props) if works and bears else [])
+
+
+def test_a_shell_without_upper_edges_is_propped_under_its_uppermost_studs(shell: Shell) -> None:
+    bare = replace(shell, joints=tuple(joint for joint in shell.joints if joint.kind != "boundary"))
+    props = prop_points(bare)
+    assert len(set(props)) == 6
+    assert set(props) <= {stud.mark for stud in shell.studs}
+    height = {stud.mark: stud.frame.origin[2] for stud in shell.studs}
+    assert max(height[mark] for mark in props) == pytest.approx(max(height.values()))
 
 
 def test_one_shell_hangs_at_a_time(down: Plan) -> None:
@@ -180,6 +209,8 @@ FAULTS: list[tuple[Callable[[Plan], Plan], str]] = [
     (lambda plan: _reversed(plan, "S1.down.unbolt.1"), "but comes later in step S1.down.unbolt.1"),
     (lambda plan: _changed(plan, "S1.down.measure", predecessors=()), "S1-A1-01-L is measured, but nothing forces"),
     (lambda plan: _changed(plan, "site.down.feet", predecessors=()), "S1-C-01 carries S1"),
+    (lambda plan: _changed(plan, "S1.down.release.1", props=()), "its centre is not over its feet and props"),
+    (lambda plan: _changed(plan, "site.down.ridge.S1.S2", props=("S1-K-198",)), "S2: step site.down.ridge.S1.S2 lets"),
     (lambda plan: _changed(plan, "S1.down.off.2", number=7), "step S1.down.off.2: number 7"),
 ]
 

@@ -13,7 +13,7 @@ from assembly.durations import step_minutes
 from assembly.gantt import HEIGHT, WIDTH, gantt_svg
 from assembly.plan import plan_of
 from assembly.schedule import Schedule, schedule_of
-from assembly.steps import Plan, Step
+from assembly.steps import PHASES, Phase, Plan, Step
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -68,6 +68,19 @@ def test_the_bars_are_as_long_as_the_steps() -> None:
     bars = [group[0] for group in root.iter(f"{SVG}g") if group.get("fill") == "#000" and len(group) == 1]
     wide = [float(bar.get("width", "0")) for bar in bars if bar.tag == f"{SVG}rect" and float(bar.get("x", "0")) > 200]
     assert wide[:2] == pytest.approx([2680.0 / 480 * 120, 2680.0 / 480 * 240], abs=0.1)
+
+
+def test_every_phase_has_one_look_on_the_chart() -> None:
+    def bar(phase: Phase) -> Plan:
+        return Plan("one", (Step(1, "s1", phase, "", "S1", (), (), (), 1, (), ()),))
+
+    legends = set()
+    for phase in PHASES:
+        root = ElementTree.fromstring(gantt_svg(bar(phase), schedule_of(bar(phase), {"s1": 60}, 1), "One"))
+        told = [node.text for node in root.iter(f"{SVG}text")]
+        assert told[-1] == "no slack (critical)"
+        legends.add(told[-2])
+    assert len(legends) == 13
 
 
 def test_the_same_schedule_gives_the_same_chart(gridshell: Gridshell) -> None:

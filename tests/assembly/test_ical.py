@@ -49,6 +49,19 @@ def test_each_step_is_one_event_with_its_times(scheduled: tuple[Plan, Schedule],
         assert event.decoded("DTSTAMP").date() == MONDAY
 
 
+def test_a_german_plan_gives_a_german_calendar(gridshell: Gridshell) -> None:
+    plan = plan_of(gridshell, 4, 25.0, language="de")
+    schedule = schedule_of(plan, {step.id: 60 for step in plan.steps}, 4)
+    calendar = icalendar.Calendar.from_ical(calendar_text(plan, schedule, MONDAY))
+    assert str(calendar["PRODID"]).endswith("//DE")
+    for step, event in zip(plan.steps, calendar.walk("VEVENT"), strict=True):
+        lines = str(event["DESCRIPTION"]).splitlines()
+        assert lines[0].startswith("1 Person" if step.crew == 1 else f"{step.crew} Leute")
+        assert ("nach Schritt" in lines[0]) == bool(step.predecessors)
+        assert lines[1] == f"Werkzeug: {', '.join(step.tools)}"
+        assert (lines[-1] == f"HALT: {step.hold}") == bool(step.hold)
+
+
 def test_lines_end_with_cr_lf_and_have_at_most_75_octets(scheduled: tuple[Plan, Schedule]) -> None:
     data = calendar_text(*scheduled, MONDAY).encode("utf-8")
     lines = data.split(b"\r\n")
