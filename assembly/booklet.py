@@ -1,15 +1,16 @@
 """What the booklets of a gridshell print: words, tables and pictures as plain data, for paper and for telephones."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil
 from typing import Any, Literal, TypeAlias
 
 from aag_cad.parts.model import Gridshell, all_parts
 from assembly.booklet_sheets import Made, laying_sheets, locking_sheets, map_sheets, segment_sheets
+from assembly.booklet_words import booklet_words
 from assembly.cards import Weights, step_card, totals
 from assembly.gantt import gantt_svg
-from assembly.language import Language, say, says, words_table
+from assembly.language import Language
 from assembly.perspective import perspective_svg
 from assembly.plan import piece_weights
 from assembly.planned import Planned
@@ -17,9 +18,9 @@ from assembly.qr import qr_svg
 from assembly.scenes import home_shell, legend_svgs, phase_svg, picture_key, step_pictures
 from assembly.schedule import Schedule
 from assembly.sections import block_section_svg, node_section_svg
+from assembly.segments import Segmentation
 from assembly.sheets import Sheets, sheets_of, shell_twins
 from assembly.site_scenes import key_svg
-from assembly.segments import Segmentation
 from assembly.steps import Plan, Step
 
 Kind: TypeAlias = Literal["sequence", "disassembly"]
@@ -43,18 +44,6 @@ class Common:
     weights: Weights
     pictures: dict[str, str]
     maps: dict[str, Any]
-
-
-def booklet_words(language: Language) -> dict[str, Any]:
-    """Return the words of the booklets in a language, as nested as their table."""
-
-    def spoken(found: Any) -> Any:
-        if language in found:
-            return found[language]
-        return {key: spoken(value) for key, value in found.items()}
-
-    words: dict[str, Any] = spoken(words_table("booklet"))
-    return words
 
 
 def _sheet_words(kind: Kind, plan: Plan) -> dict[str, Any]:
@@ -135,11 +124,15 @@ def _cards(
             pictures |= made
             drawn[key] = list(made)
         pictures[f"qr-{step.number}"] = qr_svg(card["qr"])
-        yield card | _card_words(kind, words, step, card) | {
-            "pictures": drawn[key],
-            "qr": f"qr-{step.number}",
-            "key": f"key-{home}" if (home := home_shell(step)) else "",
-        }
+        yield (
+            card
+            | _card_words(kind, words, step, card)
+            | {
+                "pictures": drawn[key],
+                "qr": f"qr-{step.number}",
+                "key": f"key-{home}" if (home := home_shell(step)) else "",
+            }
+        )
 
 
 def common_of(gridshell: Gridshell, language: Language) -> Common:

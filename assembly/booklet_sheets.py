@@ -6,8 +6,9 @@ from typing import Any
 from aag_cad.parts.model import Gridshell, Shell
 from assembly.flat import flat_order
 from assembly.flattening import flat_state
-from assembly.label_map import label_map_svg, layer_legend_svg
+from assembly.label_map import label_map_svg
 from assembly.language import Language, say
+from assembly.layer_legend import layer_legend_svg
 from assembly.laying_plan import laying_header, laying_plan_svg, laying_rows
 from assembly.locking import LockingOrder, locking_svg, locking_table, plot_words
 from assembly.names import figure
@@ -35,7 +36,7 @@ def _firsts(gridshell: Gridshell, twins: Mapping[str, str]) -> Iterator[tuple[Sh
 
 
 def map_sheets(gridshell: Gridshell, twins: Mapping[str, str], language: Language) -> Made:
-    """Return the maps of the marks of each kind of shell, the first with the legend of the layers; and their pictures."""
+    """Return the maps of the marks of each kind of shell, the first with the legend of the layers."""
     sheets, pictures = [], dict[str, str]()
     for shell, names in _firsts(gridshell, twins):
         for i, families in enumerate(_MAPS):

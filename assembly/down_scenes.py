@@ -73,7 +73,7 @@ def down_scene(shell: Shell, step: Step, there: frozenset[str], outer: set[str])
     studs = [stud.mark for stud in shell.studs]
     match step.phase:
         case "uncover":
-            plates = [part.mark for part in (*shell.strips, *shell.mullions)]
+            plates = [*(strip.mark for strip in shell.strips), *(mullion.mark for mullion in shell.mullions)]
             rings = _joints(step, [screw.mark for screw in shell.screws])
             return Scene(there=there, new=step.marks, names=_short(plates), rings=rings)
         case "prop":
@@ -81,7 +81,9 @@ def down_scene(shell: Shell, step: Step, there: frozenset[str], outer: set[str])
             return Scene(there=there, worked_on=edges, names=_short(edges), props=step.props)
         case "lift off":
             feet = feet_of(shell)
-            return Scene(there=there, rings=feet, dots=slings, numbers=numbers_of(feet), tags=dict.fromkeys(slings, "H"))
+            return Scene(
+                there=there, rings=feet, dots=slings, numbers=numbers_of(feet), tags=dict.fromkeys(slings, "H")
+            )
         case "hang":
             return Scene(there=there, dots=slings, tags=dict.fromkeys(slings, "H"), props=step.props)
         case "release geodesics":
@@ -103,9 +105,7 @@ def down_scene(shell: Shell, step: Step, there: frozenset[str], outer: set[str])
             return Scene(there=(), new=_planks_of(shell, beams), names=_short(beams), starts=beams)
 
 
-def down_pictures(
-    sheets: Sheets, shell: Shell, step: Step, there: frozenset[str], outer: set[str]
-) -> tuple[str, ...]:
+def down_pictures(sheets: Sheets, shell: Shell, step: Step, there: frozenset[str], outer: set[str]) -> tuple[str, ...]:
     """Return the SVG pictures of a step of taking down one shell: the large one first."""
     scene = down_scene(shell, step, there, outer)
     if step.phase in ("unbolt", "pull studs"):
@@ -122,5 +122,3 @@ def down_pictures(
             return (large, *(strap_section_svg(shell, strap, language=sheets.language) for strap in middle_of(straps)))
         case _:
             return (large,)
-
-

@@ -127,7 +127,9 @@ def placed_labels(
         tried = [Label(content, x, y, size) for x, y in places.tolist()]
         found = np.array([label_box(label) for label in tried])
         areas = (found[:, 2] - found[:, 0]) * (found[:, 3] - found[:, 1])
-        covers = _overlaps(found, boxes[: held + len(labels)]).sum(axis=1) + 10.0 * (areas - _overlaps(found, page)[:, 0])
+        covers = _overlaps(found, boxes[: held + len(labels)]).sum(axis=1) + 10.0 * (
+            areas - _overlaps(found, page)[:, 0]
+        )
         best = 0
         for i, cover in enumerate(covers.tolist()):
             best = i if cover < covers[best] - _SAME_AREA else best

@@ -66,7 +66,7 @@ def net_arrays(net: Net) -> Arrays:
         scissors=np.array([(*s.lower, *s.upper) for s in net.scissors], dtype=np.int64).reshape(-1, 4),
         angles=np.array([s.chords for s in net.scissors]),
         crossings=np.concatenate([np.zeros(0, dtype=np.int64), *(ray.points for ray in used)]),
-        rays=np.repeat(np.arange(len(used)), [len(ray.points) for ray in used]),
+        rays=np.repeat(np.arange(len(used)), np.array([len(ray.points) for ray in used], dtype=np.int64)),
         pivots=np.array(pivots).reshape(-1, 2),
     )
 

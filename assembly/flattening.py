@@ -6,6 +6,7 @@ hold exactly: docs/flattening.md. Floor coordinates: x to the right, y away from
 floor; seen from above, which is from outside the shell. Millimetres and radians.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -28,7 +29,7 @@ _MOST_STEPS = 200
 _FIRST_DAMPING = 1e-9
 _LEAST_DAMPING = 1e-12
 _STILL = 1e-4
-_ACROSS_CORNERS = 2.0 / np.sqrt(3.0)
+_NO_GAIN = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,12 +121,14 @@ def settled(arrays: Arrays, stiffness: Stiffness, unknowns: Floats, shell: str) 
         step = -factor.solve(now.jacobian.T @ now.values)
         then = residuals(arrays, stiffness, unknowns + step)
         lower = float(then.values @ then.values)
-        if not np.isfinite(step).all() or lower > energy * (1.0 + 1e-12):
+        still = float(np.abs(step).max()) < _STILL
+        if not lower <= energy and not still:
             damping *= 10.0
             continue
+        gained = energy - lower
         unknowns, now, energy = unknowns + step, then, lower
         damping = max(damping / 10.0, _LEAST_DAMPING)
-        if float(np.abs(step).max()) < _STILL:
+        if still or gained <= _NO_GAIN * energy:
             return unknowns
     raise PlanError(
         f"{shell}: laid flat it does not settle in {_MOST_STEPS} steps; lay it out in two parts, or on falsework"
@@ -205,22 +208,22 @@ def _rows(points: dict[str, Floats]) -> list[Floats]:
 
 def _clearance(shell: Shell, geodesics: Sequence[FlatMember], studs: Floats) -> float:
     """Return the least gap between the edge of a geodesic and a stud beside it; infinite without one."""
-    least = np.inf
-    reach = shell.studs[0].across_flats * _ACROSS_CORNERS / 2.0 if shell.studs else 0.0
+    least = math.inf
+    reach = shell.studs[0].across_flats / math.sqrt(3.0) if shell.studs else 0.0
     for member in geodesics:
         ahead = (member.points[1] - member.points[0]) / np.linalg.norm(member.points[1] - member.points[0])
         away = studs - member.points[0]
         along, aside = away @ ahead, np.abs(away @ np.array([-ahead[1], ahead[0]]))
         beside = aside[(along > -reach) & (along < member.stations[-1] + reach)]
-        least = min(least, float(beside.min(initial=np.inf)) - member.width / 2.0 - reach)
+        least = min(least, float(beside.min(initial=math.inf)) - member.width / 2.0 - reach)
     return least
 
 
 def _most_bent(net: Net, excess: Floats, free: float) -> tuple[float, float, str]:
     """Return the smallest radii of bends without and with play, and the beam of the second.
 
-    ``excess`` (m,) are the turns beyond the made ones, bend by bend. Play lets the planks of a beam turn by ``free`` either
-    way anywhere before they must bend as one: between two places it takes twice that off their difference.
+    ``excess`` (m,) are the turns beyond the made ones, bend by bend. Play lets the planks of a beam turn by ``free``
+    either way before they must bend as one: between two places it takes twice that off their difference.
     """
     stiff, eased, worst, first = 0.0, -1.0, "", 0
     for chain in net.chains:

@@ -41,6 +41,37 @@ def _in_our_types(values: Mapping[str, Any]) -> Attributes:
     return read
 
 
+def _free_key(graph: "nx.MultiGraph[str]", a: str, b: str, keys: Iterable[str]) -> str | None:
+    """Return the first of some keys that no edge between two nodes has, or None."""
+    return next((key for key in keys if not graph.has_edge(a, b, key)), None)
+
+
+def _add(graph: "nx.MultiGraph[str]", a: str, b: str, key: str | None, values: Attributes) -> None:
+    # Not as keywords: others may have attributes of the names of the parameters.
+    new = graph.add_edge(a, b, key)
+    graph.edges[a, b, new].update(values)
+
+
+def _completed(graph: "nx.MultiGraph[str]") -> "nx.MultiGraph[str]":
+    """Return a faultless graph with its defaults, sorted; edges without a key get their joint's mark, or more of it."""
+    full: nx.MultiGraph[str] = nx.MultiGraph(name=str(graph.graph.get("name", "")))
+    for mark in sorted(graph):
+        node: Attributes = {"family": "", "shell": "", "beam": "", "layer": None} | _in_our_types(graph.nodes[mark])
+        if is_laid(node):
+            middle = tuple((a + b) / 2.0 for a, b in zip(node["start"], node["end"], strict=True))
+            node = {"position": middle, "upright": False, **node}
+        full.add_node(mark)
+        full.nodes[mark].update(node)
+    edges = ((*sorted((a, b)), key, values) for a, b, key, values in graph.edges(keys=True, data=True))
+    for a, b, key, values in sorted(edges, key=lambda edge: (*edge[:2], not isinstance(edge[2], str), str(edge[2]))):
+        joint = joint_name(a, b, key, values)
+        kind = f"{joint} {values['kind']}"
+        keys = [key] if isinstance(key, str) else [joint, kind, f"{kind} {key}"]
+        edge = {"joint_kind": ""} | _in_our_types(values) | {"joint": joint}
+        _add(full, a, b, _free_key(full, a, b, keys), edge)
+    return full
+
+
 def with_defaults(graph: "nx.Graph[str]") -> "nx.MultiGraph[str]":
     """Return a graph with the documented defaults filled in, its nodes and edges sorted, its edges keyed by joint.
 
@@ -48,18 +79,7 @@ def with_defaults(graph: "nx.Graph[str]") -> "nx.MultiGraph[str]":
     """
     several: nx.MultiGraph[str] = graph if isinstance(graph, nx.MultiGraph) else nx.MultiGraph(graph)
     refuse(graph_problems(several))
-    full: nx.MultiGraph[str] = nx.MultiGraph(name=str(several.graph.get("name", "")))
-    for mark in sorted(several):
-        node: Attributes = {"family": "", "shell": "", "beam": "", "layer": None} | _in_our_types(several.nodes[mark])
-        if is_laid(node):
-            middle = tuple((a + b) / 2.0 for a, b in zip(node["start"], node["end"], strict=True))
-            node = {"position": middle, "upright": False, **node}
-        full.add_node(mark, **node)
-    for a, b, key, values in sorted(several.edges(keys=True, data=True), key=lambda edge: tuple(map(str, edge[:3]))):
-        joint = joint_name(a, b, key, values)
-        edge = {"joint_kind": ""} | _in_our_types(values) | {"joint": joint}
-        full.add_edge(a, b, key=key if isinstance(key, str) else joint, **edge)
-    return full
+    return _completed(several)
 
 
 def _plain(where: str, values: Mapping[str, Any]) -> Attributes:
@@ -108,28 +128,26 @@ def _assembled(name: str, nodes: Iterable[tuple[str, Attributes]], edges: Iterab
     problems: list[GraphProblem] = []
     for mark, values in nodes:
         if mark in graph:
-            problems.append(
-                GraphProblem(mark, "mark", repr(mark), "each mark once", "give one of the two another mark")
-            )
-        graph.add_node(mark, **_in_our_types(values))
+            remedy = "give one of the two another mark"
+            problems.append(GraphProblem(mark, "mark", repr(mark), "each mark once", remedy))
+        graph.add_node(mark)
+        graph.nodes[mark].update(_in_our_types(values))
     for a, b, key, values in edges:
-        where = f"edge {a} - {b}"
+        where, joint = f"edge {a} - {b}", values.get("joint")
         strangers = [mark for mark in (a, b) if mark not in graph]
-        for mark in strangers:
-            problems.append(
-                GraphProblem(where, "end", repr(mark), "the mark of a node", "add the node or the edge's end")
-            )
-        joint = values.get("joint")
-        names = [key, joint, f"{joint} {values.get('kind')}"] if joint else [key]
-        free = [name for name in names if name is not None and not graph.has_edge(a, b, name)]
-        if any(name is not None for name in names) and not free:
-            problems.append(
-                GraphProblem(where, "joint", repr(joint or key), "once", "give the second one another joint")
-            )
+        problems += [
+            GraphProblem(where, "end", repr(mark), "the mark of a node", "add the node, or leave the edge out")
+            for mark in strangers
+        ]
+        keys = [key] if key else [joint, f"{joint} {values.get('kind')}"] if isinstance(joint, str) and joint else []
+        free = _free_key(graph, a, b, keys)
+        if keys and free is None:
+            remedy = "give the second one another joint or key"
+            problems.append(GraphProblem(where, "joint", repr(keys[0]), "each once", remedy))
         elif not strangers:
-            graph.add_edge(a, b, key=free[0] if free else None, **_in_our_types(values))
+            _add(graph, a, b, free, _in_our_types(values))
     refuse((*problems, *graph_problems(graph)))
-    return with_defaults(graph)
+    return _completed(graph)
 
 
 def _items(data: Attributes, name: str, marks: tuple[str, ...]) -> list[Attributes]:
@@ -141,6 +159,8 @@ def _items(data: Attributes, name: str, marks: tuple[str, ...]) -> list[Attribut
         for mark in marks:
             if not isinstance(item, dict) or not isinstance(item.get(mark), str) or not item[mark]:
                 raise PlanError(f"graph: {name}[{i}]: {item!r:.80}; give an object with {mark} as a text")
+        if not isinstance(item.get("key", ""), str):
+            raise PlanError(f"graph: {name}[{i}]: key {item['key']!r:.60}; give it as a text, or leave it out")
     return items
 
 
@@ -152,7 +172,9 @@ def read_graph(text: str) -> "nx.MultiGraph[str]":
         raise PlanError(f"graph: not valid JSON: {error}") from error
     version = data.get("schema_version") if isinstance(data, dict) else None
     if version != SCHEMA_VERSION:
-        raise PlanError(f"graph: schema_version {version!r}, this program reads {SCHEMA_VERSION}; see docs/graph.md")
+        raise PlanError(
+            f"graph: schema_version {version!r}, this program reads {SCHEMA_VERSION}; see docs/interlacing.md"
+        )
     nodes = [(item.pop("mark"), item) for item in _items(data, "nodes", ("mark",))]
     edges = [(e.pop("a"), e.pop("b"), e.pop("key", None), e) for e in _items(data, "edges", ("a", "b"))]
     return _assembled(str(data.get("name", "")), nodes, edges)

@@ -304,7 +304,7 @@ def laying_rows(shell: Shell, state: FlatState, language: Language = "en") -> li
     """
 
     def numbers(point: Floats) -> tuple[str, str]:
-        return f"{point[0]:.0f}", f"{point[1]:.0f}"
+        return f"{round(float(point[0]))}", f"{round(float(point[1]))}"
 
     def single(points: dict[str, Floats], word: str) -> list[Row]:
         what = say(language, f"drawings.setting_out.{word}")

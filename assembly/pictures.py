@@ -58,8 +58,8 @@ class Scene:
     """What a picture shows of a shell, by mark.
 
     ``there`` and ``new`` are planks and other pieces, ``worked_on`` planks; ``dots`` joints with a solid dot, ``rings``
-    joints with a ring, ``done`` joints with a small grey dot, ``props`` joints on a prop. ``names`` are framed labels of
-    planks, beams or pieces along their lines, ``tags`` framed and ``numbers`` plain labels at joints; ``starts`` are
+    joints with a ring, ``done`` joints with a small grey dot, ``props`` joints on a prop. ``names`` are framed labels
+    of planks, beams or pieces along their lines, ``tags`` framed and ``numbers`` plain labels at joints; ``starts`` are
     planks or beams whose start ends get a triangle. ``slides`` are planks or beams that are slid in along their line,
     each with the end that lies outside longest.
     """
@@ -86,7 +86,7 @@ def _triangle(start: Floats, towards: Floats, size: float) -> Floats:
     return np.array([tip, base + 0.5 * size * across, base - 0.5 * size * across])
 
 
-def _arrow(points: Floats, outside: Literal["start", "end"]) -> str:
+def slide_arrow(points: Floats, outside: Literal["start", "end"]) -> str:
     """Return an arrow beside the middle of a line (n, 2), from the end that lies outside longest."""
     ends = places_along(points, (0.06, 0.3) if outside == "start" else (0.94, 0.7))
     along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
@@ -154,7 +154,7 @@ def scene_items(outline: Outline, scene: Scene) -> Iterable[str]:
     yield group((circle(outline.points[mark], 0.8 * _DOT) for mark in scene.rings), RING)
     yield group((circle(outline.points[mark], _DOT) for mark in scene.dots), DOT)
     yield prop_items(outline.points[mark] for mark in scene.props)
-    yield from (_arrow(outline.lines[mark], outside) for mark, outside in scene.slides.items())
+    yield from (slide_arrow(outline.lines[mark], outside) for mark, outside in scene.slides.items())
     yield _labels(outline, scene)
 
 

@@ -1,4 +1,4 @@
-"""The booklets as PDF, by the template ``printouts/sequence.typ``: one card a step, with what a crew needs beside them."""
+"""The booklets as PDF, by the template ``printouts/sequence.typ``: maps, schedule, one card a step."""
 
 import json
 import os

@@ -13,8 +13,8 @@ from assembly.drawing import group, path, svg
 from assembly.flat import flat_order
 from assembly.graph import joint_of
 from assembly.kit import driven_from_outside
-from assembly.pictures import NEW, PIECES, STEEL, THERE, Scene, prop_items, scene_svg
 from assembly.outline import shell_outline
+from assembly.pictures import NEW, PIECES, STEEL, THERE, Scene, prop_items, scene_svg
 from assembly.ranges import short_mark
 from assembly.segment_scenes import segment_scene, stood_segments
 from assembly.segments import Segmentation
@@ -165,7 +165,11 @@ def step_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
     if sheets.segmentation and (step.phase == "divide" or stood_segments(step, sheets.segmentation)):
         return _segment_pictures(sheets, step, sheets.segmentation)
     if not home_shell(step):
-        sections = foot_sections(sheets.gridshell.shells[0], sheets.language) if step.phase in ("feet", "clear feet", "stand") else ()
+        sections = (
+            foot_sections(sheets.gridshell.shells[0], sheets.language)
+            if step.phase in ("feet", "clear feet", "stand")
+            else ()
+        )
         return (site_svg(sheets, step), *sections)
     shell, step, there = _twinned(sheets, step)
     if step.phase in DOWN_PHASES:

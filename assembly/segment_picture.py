@@ -237,7 +237,7 @@ def segment_svg(gridshell: Gridshell, segmentation: Segmentation, segment: Segme
     """
     shell = next(shell for shell in gridshell.shells if shell.mark == segment.shell)
     outline = shell_outline(shell, WIDTH, _MARGIN)
-    legend = "   ".join(says(language, "segments.picture.legend"))
+    legend = " \u00b7 ".join(says(language, "segments.picture.legend"))
     words = group([text(legend, _MARGIN, outline.height + 10.0, 0.8 * _SMALL, "start")], Style("#000"))
     height, below = _transport_items(shell, segmentation, segment, outline.height + 30.0, language)
     items = [*_shell_items(outline, shell, segmentation, segment), words, *below]

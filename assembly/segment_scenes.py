@@ -42,7 +42,9 @@ def segment_scene(shell: Shell, step: Step, segmentation: Segmentation, standing
     ``standing`` are the planks that stand on site before the step.
     """
     own = _own(shell, segmentation)
-    splices = [splice for splice in segmentation.splices if any(c.plank.startswith(f"{shell.mark}-") for c in splice.cuts)]
+    splices = [
+        splice for splice in segmentation.splices if any(c.plank.startswith(f"{shell.mark}-") for c in splice.cuts)
+    ]
     if step.phase == "stand":
         moved = stood_segments(step, segmentation)
         new = [mark for mark in segment_planks(shell, moved) if mark not in standing]

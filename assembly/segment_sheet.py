@@ -102,8 +102,8 @@ def _room(segment: Segment, limits: Limits, language: Language) -> str:
     if segment.fits:
         left = " x ".join(_number(-value) or "…" for value in segment.over[:3])
         return _say(language, "value.fits", left=left, mass=_number(-segment.over[3]) or "…")
-    words = says(language, "segments.value.over")
-    over = [text.format(over=_number(v)) for v, text in zip(segment.over, words, strict=True) if v > 0.0]
+    sizes = zip(("length", "width", "height", "mass"), segment.over, strict=True)
+    over = [_say(language, f"value.{key}_over", over=_number(value)) for key, value in sizes if value > 0.0]
     return _say(language, "value.not_fits", over=", ".join(over))
 
 

@@ -58,9 +58,10 @@ class Sheets:
 def _alike(one: Shell, other: Shell) -> bool:
     """Return whether two shells have the same parts at the same places but for the shell's number in their marks."""
     ours, theirs = shell_parts(one), shell_parts(other)
+    planks = zip(one.planks, other.planks, strict=False)
     return (
         [short_mark(part.mark) for part in ours] == [short_mark(part.mark) for part in theirs]
-        and all(a.curve == b.curve and a.blank.section == b.blank.section for a, b in zip(one.planks, other.planks))
+        and all(a.curve == b.curve and a.blank.section == b.blank.section for a, b in planks)
         and [short_mark(joint.mark) for joint in one.joints] == [short_mark(joint.mark) for joint in other.joints]
         and bool(np.array_equal([j.point for j in one.joints], [j.point for j in other.joints]))
     )

@@ -110,7 +110,9 @@ def elevation_svg(shell: Shell, slings: Sequence[str] = (), flat: bool = True) -
     """Return the shell from its side in its shape, with control points or ``slings``; dashed as it lies ``flat``."""
     outline, control = elevation_outline(shell, SMALL_WIDTH, MARGIN), control_figures(shell).studs
     laid, floor = _flat_line(shell, outline)
-    tags = dict.fromkeys(slings, "H") or {mark: name for name, mark in control.items()}
+    # Two slings that are seen at one place get one label.
+    seen = {tuple(np.round(outline.points[mark] / 40.0).tolist()): mark for mark in slings}
+    tags = dict.fromkeys(seen.values(), "H") or {mark: name for name, mark in control.items()}
     scene = Scene(there=tuple(outline.planks), rings=tuple(tags), tags=tags)
     reach = max(outline.width, float(laid[1, 0]) + 10.0) if flat else outline.width
 

@@ -16,7 +16,7 @@ from assembly.gantt import gantt_svg
 from assembly.graph import assembly_graph
 from assembly.graph_file import graph_json, graphml
 from assembly.ical import write_calendar
-from assembly.locking import locking_svg
+from assembly.locking import locking_svg, plot_words
 from assembly.page import graph_html, write_page
 from assembly.plan import Plan, plan_json
 from assembly.planned import Planned
@@ -54,7 +54,7 @@ def _write_schedule(planning: Planning, folder: Path) -> None:
 def _write_locking(planning: Planning, folder: Path) -> None:
     orders = planning.planned.locking
     write_locking_table(orders, folder / "tables" / "locking.csv")
-    write_text(folder / "locking.svg", locking_svg(orders[0]))
+    write_text(folder / "locking.svg", locking_svg(orders[0], plot_words(planning.planned.plan.language)))
 
 
 def _write_segments(planning: Planning, folder: Path) -> None:

@@ -74,7 +74,7 @@ def weaves(draw: st.DrawFn, most: int = 9) -> Weave:
     across = st.tuples(place, place).map(lambda y: ((0.0, y[0]), (4000.0, y[1])))
     along = st.tuples(place, place).map(lambda x: ((x[0], 0.0), (x[1], 4000.0)))
     members = []
-    for i, line in enumerate(draw(st.lists(st.one_of(across, along, anywhere), min_size=1, max_size=most))):
+    for i, line in enumerate(draw(st.lists(st.one_of(across, along, anywhere), min_size=3, max_size=most))):
         start, end = line
         if math.dist(start, end) > 500.0:
             upright = draw(st.sampled_from([False, False, True]))
@@ -169,7 +169,10 @@ def ambiguous(weave: Weave) -> bool:
     for a, b in combinations(weave.members, 2):
         shares = met((a.start, a.end), (b.start, b.end))
         if shares is None:
-            return True
+            (x, y), (gx, gy) = np.subtract(a.end, a.start) / a.length, np.subtract(b.start, a.start)
+            if abs(gx * y - gy * x) < 5.0:
+                return True
+            continue
         for share, member in zip(shares, (a, b), strict=True):
             if min(abs(share), abs(share - 1.0)) * member.length < 5.0:
                 return True

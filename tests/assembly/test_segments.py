@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import replace
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from aag_cad.design import load_design
+from aag_cad.design import Design, load_design
 from aag_cad.mechanics.fastener_spacing import bolt_distances
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.mesh import frame_matrix, shell_mesh
@@ -19,10 +20,11 @@ from aag_cad.parts.model import Gridshell, shell_parts
 from aag_cad.parts.quantities import mass
 from aag_cad.pipeline import gridshell_of
 from assembly.boxes import best_pose, hull_points
+from assembly.errors import PlanError
 from assembly.runs import Divisible, divisible, run_between, run_splices
-from assembly.segment_search import Limits, best_stops
-from assembly.segment_sheet import SEGMENTS_HEADER, SPLICES_HEADER, segment_cards, segment_rows, splice_rows
-from assembly.segments import Segmentation, segments
+from assembly.segment_findings import splice_finding
+from assembly.segment_search import Limits, best_stops, limits_from
+from assembly.segments import Segmentation, segment_findings, segments
 
 LORRY = Limits(12000.0, 2400.0, 2600.0, 3000.0)
 NARROW = Limits(12000.0, 2400.0, 2400.0, 3000.0)
@@ -180,7 +182,7 @@ def test_cuts_and_bolts_of_splices_keep_clear_of_every_other_hole(single: Gridsh
     limits = bolt_distances(8.0, 0.0)
     assert lorry.splices
     for splice in lorry.splices:
-        assert not splice.problem
+        assert splice.fits
         assert len(splice.cuts) == (2 if splice.kind == "block" else 1)
         last_bolt = limits.a3_t + (splice.columns - 1) * limits.a1
         for cut in splice.cuts:
@@ -192,6 +194,7 @@ def test_cuts_and_bolts_of_splices_keep_clear_of_every_other_hole(single: Gridsh
                 assert any(j.joint == splice.joint and j.station == cut.station for j in planks[cut.plank].joints)
         if splice.kind == "block":
             assert splice.length == pytest.approx(2.0 * (last_bolt + limits.a3_t))
+            assert splice.room >= splice.length / 2.0
 
 
 def test_only_beams_with_studs_on_both_sides_of_a_line_are_cut(single: Gridshell, lorry: Segmentation) -> None:
@@ -227,7 +230,7 @@ def test_the_centres_of_gravity_of_the_segments_make_that_of_the_shell(
     whole = segments(single, WIDE).segments[0]
     masses = [segment.mass for segment in lorry.segments]
     joined = np.average([segment.centre for segment in lorry.segments], axis=0, weights=masses)
-    # Splice blocks in place of coupling blocks and the fasteners put in on site shift it a little.
+    # Coupling blocks that splices replace and the fasteners put in on site shift it a little.
     assert joined == pytest.approx(np.array(whole.centre), abs=40.0)
     small = {part.mark: part for part in shell_parts(item.shell)}
     assert whole.mass == pytest.approx(sum(mass(small[mark], single.timber) for mark in whole.parts), rel=1e-12)
@@ -250,9 +253,11 @@ def test_a_narrow_lorry_says_what_must_change_and_what_it_says_is_enough(single:
     plan = segments(single, NARROW)
     assert len(plan.segments) == 4
     (change,) = plan.changes
-    assert change.startswith("S1: does not fit 12000 x 2400 x 2400 mm and 3000 kg whole; it is cut into 4 along")
-    width = float(change.partition("transport.width = ")[2].split()[0])
-    height = float(change.partition("transport.height = ")[2].split()[0])
+    assert (change.code, change.severity, change.mark) == ("AAG961", "warning", "S1")
+    assert "does not fit 12000 x 2400 x 2400 mm and 3000 kg whole: it is cut into 4 along" in change.remedy
+    assert change.found > change.allowed == 2400.0
+    width = float(change.remedy.partition("transport.width = ")[2].split()[0])
+    height = float(change.remedy.partition("transport.height = ")[2].split()[0])
     for limits in (replace(NARROW, width=width), replace(NARROW, height=height)):
         assert best_stops(item, limits) == ()
 
@@ -262,10 +267,12 @@ def test_a_crane_too_weak_for_one_geodesic_with_its_beams_is_a_problem(single: G
     (segment,) = plan.segments
     assert not segment.fits
     assert segment.over[1] < 0.0 < segment.over[3]
-    (problem,) = plan.problems
-    assert "S1: no cuts along its geodesics make it fit 12000 x 4000 x 4000 mm and 10 kg" in problem
-    assert "alone with the beams beside it takes" in problem
-    assert f"it travels whole with a load of {math.ceil(segment.mass)} kg" in problem
+    (problem,) = segment_findings(plan)
+    assert (problem.code, problem.severity, problem.mark, problem.unit) == ("AAG962", "error", "S1", "kg")
+    assert problem.found > problem.allowed == 10.0
+    assert "no cuts along its geodesics make it fit 12000 x 4000 x 4000 mm and 10 kg" in problem.remedy
+    assert "alone with the beams beside it takes" in problem.remedy
+    assert f"it travels whole with a load of {math.ceil(segment.mass)} kg" in problem.remedy
 
 
 def test_a_box_shorter_than_the_geodesics_is_a_problem(item: Divisible) -> None:
@@ -293,12 +300,83 @@ def test_corners_reach_as_far_as_the_meshes_of_all_that_travels(single: Gridshel
     assert run.corners.max(axis=0) == pytest.approx(points.max(axis=0), abs=1.1)
 
 
-def test_rows_and_cards_are_printed_from_the_plan(lorry: Segmentation) -> None:
-    rows = segment_rows(lorry)
-    assert all(len(row) == len(SEGMENTS_HEADER) for row in rows)
-    assert [row[0] for row in rows] == ["S1.1", "S1.2", "S1.3"]
-    assert all(len(row) == len(SPLICES_HEADER) for row in splice_rows(lorry))
-    assert len(splice_rows(lorry)) == sum(len(splice.cuts) for splice in lorry.splices)
-    cards = segment_cards(lorry)
-    assert sum(len(card["splices"]) for card in cards) == sum(s.kind == "block" for s in lorry.splices)
-    assert all(str(card["room"]).startswith("fits; ") for card in cards)
+def test_the_shipped_transport_carries_the_shells_whole(design: Design, gridshell: Gridshell) -> None:
+    """A wide load of 4.6 m: the 2.6 m high lorry takes each shell, of the paper's weight, as it is (section 3.2)."""
+    shipped = design.transport
+    assert shipped is not None
+    plan = segments(gridshell, Limits(shipped.length, shipped.width, shipped.height, shipped.mass, shipped.crane))
+    assert [segment.name for segment in plan.segments] == ["S1", "S2", "S3"]
+    assert segment_findings(plan) == ()
+    for segment in plan.segments:
+        assert segment.timber == pytest.approx(300.0, rel=0.1)
+        assert segment.mass == pytest.approx(330.0, rel=0.05)
+        assert segment.props == ()
+        assert all(over <= 0.0 for over in segment.over)
+
+
+def test_without_a_transport_nothing_is_cut(single: Gridshell) -> None:
+    plan = segments(single, Limits(*(4 * (math.inf,))))
+    (segment,) = plan.segments
+    assert segment.fits
+    assert segment_findings(plan) == ()
+    assert all(math.isfinite(size) for size in segment.pose.size)
+
+
+def test_what_a_crane_cannot_lift_is_cut_though_the_lorry_would_carry_it(single: Gridshell) -> None:
+    plan = segments(single, replace(WIDE, crane=200.0))
+    assert len(plan.segments) == 2
+    assert all(segment.mass <= 200.0 for segment in plan.segments)
+    (change,) = plan.changes
+    assert (change.unit, change.allowed) == ("kg", 200.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "limits"),
+    [
+        ("12000x2400x2400", Limits(12000.0, 2400.0, 2400.0, math.inf)),
+        ("12000x2400x2400x3000", Limits(12000.0, 2400.0, 2400.0, 3000.0)),
+        (" 12000 x 2400 X 2400\u00d73000 x 500.5", Limits(12000.0, 2400.0, 2400.0, 3000.0, 500.5)),
+    ],
+)
+def test_a_transport_is_written_by_its_sizes(text: str, limits: Limits) -> None:
+    assert limits_from(text) == limits
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("12000x2400", "2 numbers, allowed 3 to 5"),
+        ("1x2x3x4x5x6", "6 numbers, allowed 3 to 5"),
+        ("12000xtwox2400", "width = 'two' is no number"),
+        ("12000x2400x0", "height = 0, allowed more than 0"),
+        ("12000x2400x2400xnan", "mass = nan, allowed more than 0"),
+        ("12000x2400x2400x3000x-5", "crane = -5, allowed more than 0"),
+    ],
+)
+def test_a_transport_that_cannot_be_read_is_refused_with_an_example(text: str, complaint: str) -> None:
+    with pytest.raises(PlanError, match=r"--transport .*" + re.escape(complaint)) as refused:
+        limits_from(text)
+    assert "12000x2400x2400x3000" in str(refused.value)
+
+
+def test_splices_without_room_are_findings_with_both_figures(lorry: Segmentation) -> None:
+    block = next(splice for splice in lorry.splices if splice.kind == "block")
+    plate = next(splice for splice in lorry.splices if splice.kind == "plate")
+    assert splice_finding(block) is None
+    for splice, found, allowed in (
+        (replace(block, required=1000.0), block.clear, 1000.0),
+        (replace(block, room=150.0), 150.0, block.reach),
+        (replace(plate, required=1000.0), plate.clear, 1000.0),
+    ):
+        told = splice_finding(splice, "de")
+        assert told is not None
+        assert (told.code, told.severity, told.mark) == ("AAG964", "error", splice.member)
+        assert (told.found, told.allowed) == (found, allowed)
+        assert told.remedy
+
+
+def test_a_narrow_last_segment_cannot_be_slung_by_three_joints(single: Gridshell) -> None:
+    problems = [finding for finding in segment_findings(segments(single, NARROW)) if finding.severity == "error"]
+    (problem,) = problems
+    assert (problem.code, problem.mark) == ("AAG963", "S1.4")
+    assert problem.found < problem.allowed == 100.0
