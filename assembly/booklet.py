@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from math import ceil
 from typing import Any, Literal, TypeAlias
 
+from aag_cad.findings import worst_first
 from aag_cad.parts.model import Gridshell, all_parts
 from assembly.booklet_sheets import Made, laying_sheets, locking_sheets, map_sheets, segment_sheets
-from assembly.booklet_words import booklet_words
+from assembly.booklet_words import booklet_words, finding_line
 from assembly.cards import Weights, step_card, totals
 from assembly.gantt import gantt_svg
 from assembly.language import Language
@@ -86,11 +87,16 @@ def _listing(words: Mapping[str, Any], plan: Plan) -> list[dict[str, Any]]:
     ]
 
 
+def _alone(step: Step) -> str:
+    """Return the shell that a step on site moves or joins segments of, or ""."""
+    return step.assemblies[0] if len(step.assemblies) == 1 else ""
+
+
 def _caption(step: Step) -> str:
     """Return the key of the caption of a step's pictures, by its phase and by what there is to see."""
     if step.phase in ("edge planks", "pull edge planks") and not any("-R-" in mark for mark in step.marks):
         return f"{step.phase} alone"
-    if step.phase == "stand" and step.assemblies[0] not in step.id.split("."):
+    if step.phase == "stand" and step.id != f"site.stand.{step.assemblies[0]}":
         return "stand segment"
     return step.phase
 
@@ -130,7 +136,7 @@ def _cards(
             | {
                 "pictures": drawn[key],
                 "qr": f"qr-{step.number}",
-                "key": f"key-{home}" if (home := home_shell(step)) else "",
+                "key": f"key-{home}" if (home := home_shell(step) or _alone(step)) else "",
             }
         )
 
@@ -166,6 +172,7 @@ def _booklet(
         "layings": [],
         "lockings": [],
         "segments": [],
+        "findings": [finding_line(finding, plan.language) for finding in worst_first(plan.findings)],
         **common.maps,
     }
     return Booklet(data, pictures), sheets
@@ -191,13 +198,15 @@ def _how(words: Mapping[str, Any], plan: Plan, sheets: Sheets, cards: Sequence[M
 
 def sequence_booklet(planned: Planned, common: Common) -> Booklet:
     """Return the booklet of putting together, in the language of its plan."""
-    plan, gridshell = planned.plan, common.gridshell
+    plan, gridshell, parted = planned.plan, common.gridshell, planned.segmentation
     booklet, sheets = _booklet("sequence", plan, planned.schedule, common, planned.segmentation)
     words, cards = booklet.data["words"], booklet.data["cards"]
     data, pictures = dict(booklet.data), dict(booklet.pictures)
+    found = worst_first((*plan.findings, *parted.problems, *parted.changes))
+    data["findings"] = [finding_line(finding, plan.language) for finding in found]
     for more, drawn in (
         _how(words, plan, sheets, cards),
-        laying_sheets(gridshell, sheets.twins, plan.language),
+        laying_sheets(gridshell, planned.flat, sheets.twins, plan.language),
         locking_sheets(planned.locking, sheets.twins, plan.language),
         segment_sheets(gridshell, planned.segmentation, plan.language),
     ):

@@ -5,7 +5,7 @@ from typing import Any
 
 from aag_cad.parts.model import Gridshell, Shell
 from assembly.flat import flat_order
-from assembly.flattening import flat_state
+from assembly.flattening import FlatState
 from assembly.label_map import label_map_svg
 from assembly.language import Language, say
 from assembly.layer_legend import layer_legend_svg
@@ -53,11 +53,15 @@ def map_sheets(gridshell: Gridshell, twins: Mapping[str, str], language: Languag
     return {"maps": sheets}, pictures
 
 
-def laying_sheets(gridshell: Gridshell, twins: Mapping[str, str], language: Language) -> Made:
+def laying_sheets(
+    gridshell: Gridshell, flat: Mapping[str, FlatState], twins: Mapping[str, str], language: Language
+) -> Made:
     """Return the flat laying plans with their coordinates, of members and of single points; and their pictures."""
     sheets, pictures = [], dict[str, str]()
     for shell, names in _firsts(gridshell, twins):
-        state = flat_state(shell)
+        if shell.mark not in flat:
+            continue
+        state = flat[shell.mark]
         pictures[f"laying-{shell.mark}"] = laying_plan_svg(shell, state, flat_order(shell), language)
         rows, head = laying_rows(shell, state, language), laying_header(language)
         sheets.append({

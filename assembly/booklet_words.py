@@ -2,7 +2,9 @@
 
 from typing import Any
 
-from assembly.language import Language, words_table
+from aag_cad.findings import Finding
+from assembly.language import Language, say, words_table
+from assembly.names import figure
 
 
 def booklet_words(language: Language) -> dict[str, Any]:
@@ -15,3 +17,13 @@ def booklet_words(language: Language) -> dict[str, Any]:
 
     words: dict[str, Any] = spoken(words_table("booklet"))
     return words
+
+
+def finding_line(finding: Finding, language: Language) -> str:
+    """Return a finding in one line of a language: mark, what was found, what is allowed, and the remedy."""
+    unit = f" {finding.unit}" if finding.unit else ""
+    found, allowed = (figure(f"{value:.4g}", language) + unit for value in (finding.found, finding.allowed))
+    key = f"booklet.findings.{'line' if finding.allowed else 'none'}"
+    return say(
+        language, key, mark=finding.mark, what=finding.what, found=found, allowed=allowed, remedy=finding.remedy
+    )

@@ -145,7 +145,8 @@ def _shell_problems(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]
         if first.id == second.id and turn > later_turn:
             yield f"{joint}: {upper} is laid before {lower} in step {first.id}, but lies on it"
         elif first.id != second.id and first.id not in forced[second.id]:
-            yield f"{joint}: {upper} in step {second.id} lies on {lower}, but nothing forces step {first.id} before it"
+            does = "passes" if second.phase == "slide" else "lies on"
+            yield f"{joint}: {upper} in step {second.id} {does} {lower}, but nothing forces step {first.id} before it"
     for reason, first, second in _orders(plan, shell, places):
         if first.id != second.id and first.id not in forced[second.id]:
             yield f"{reason}, but nothing forces step {first.id} before step {second.id}"

@@ -1,7 +1,7 @@
 """Who lies on whom, the circles in it, and few units whose removal leaves none."""
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from itertools import groupby, pairwise
 
 import networkx as nx
@@ -73,15 +73,23 @@ def _without_needless(graph: "nx.DiGraph[str]", removed: Iterable[str]) -> list[
     return sorted(out)
 
 
+def _through(graph: "nx.DiGraph[str]", knot: Collection[str]) -> Callable[[str], tuple[int, str]]:
+    """Return what sorts the units of a knot by how many ways lead in and out of them within it, most first."""
+
+    def order(mark: str) -> tuple[int, str]:
+        inwards = sum(other in knot for other in graph.predecessors(mark))
+        return -inwards * sum(other in knot for other in graph.successors(mark)), mark
+
+    return order
+
+
 def _greedy(knot: "nx.DiGraph[str]", allowed: Collection[str]) -> list[str]:
     """Return units whose removal leaves no circle: in each knot that is left, the one with most ways through it."""
     rest = knot.copy()
     chosen: list[str] = []
     while left := knots(rest):
         for marks in left:
-            part = part_of(rest, marks)
-            able = (mark for mark in marks if mark in allowed)
-            chosen.append(min(able, key=lambda mark: (-part.in_degree(mark) * part.out_degree(mark), mark)))
+            chosen.append(min((mark for mark in marks if mark in allowed), key=_through(rest, set(marks))))
         rest.remove_nodes_from(chosen)
     return _without_needless(knot, chosen)
 

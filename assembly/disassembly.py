@@ -12,7 +12,7 @@ from aag_cad.parts.model import Bolt, Gridshell, Rod, Shell, Timber
 from aag_cad.units import MM_PER_M
 from assembly.control import prop_points
 from assembly.crew import Crew, crew_of, hands_for
-from assembly.flat import flat_order, groups_of
+from assembly.flat import FlatOrder, flat_orders, groups_of
 from assembly.kit import Kit, shell_kit
 from assembly.language import Language, say, says
 from assembly.layers import crossing_levels, lying_unit
@@ -245,23 +245,34 @@ def _step(
     )
 
 
-def disassembly_of(gridshell: Gridshell, people: int, lift_limit: float, *, language: Language = "en") -> Plan:
+def disassembly_of(
+    gridshell: Gridshell,
+    people: int,
+    lift_limit: float,
+    *,
+    orders: Mapping[str, FlatOrder] | None = None,
+    language: Language = "en",
+) -> Plan:
     """Return the plan of taking a gridshell down for reuse, by ``people`` who lift at most ``lift_limit`` kg each.
 
     ``marks`` are the parts that leave in a step, in the order in which they do. Cover off, all shells propped, ridges
     opened, each shell lifted off, released while it hangs, lowered flat, taken apart and measured (paper, section 5).
-    One set of hoists serves all shells, so that one hangs at a time. The texts are those of
+    One set of hoists serves all shells, so that one hangs at a time. ``orders`` say how each shell was laid flat, by
+    mark (none: ``flat_orders``); what was slid in is pulled out first. The texts are those of
     ``templates/printouts/words/down.toml``.
 
     PlanError if the layers are woven in a circle, a part belongs to no joint, or the crew is empty.
     """
     crew, weights = crew_of(people, lift_limit), piece_weights(gridshell)
+    laid = orders if orders is not None else flat_orders(gridshell, language)
     kits = {shell.mark: shell_kit(shell) for shell in gridshell.shells}
     props = {shell.mark: prop_points(shell) for shell in gridshell.shells}
     chapters = [list(_site_tasks(gridshell, kits))]
     hoists: tuple[str, ...] = ()
     for shell in gridshell.shells:
-        runs, kit = flat_order(shell).runs, kits[shell.mark]
+        order, kit = laid[shell.mark], kits[shell.mark]
+        slid = tuple(slide.unit for slide in order.slides)
+        runs = (*order.runs, slid) if slid else order.runs
         flat = [unit for unit in _flat(runs) if unit in kit.inside]
         chapters.append([*_unlocking(shell.mark, flat, kit, hoists), *_dismantling(shell, runs, kit)])
         hoists = (f"{shell.mark}.down.lower",)

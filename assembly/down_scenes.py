@@ -6,10 +6,11 @@ from aag_cad.parts.model import Plank, Shell
 from assembly.control import sling_points
 from assembly.details import beam_strips_svg
 from assembly.graph import joint_of
+from assembly.picture_marks import feet_of, middle_of, numbers_of
 from assembly.pictures import Scene, scene_svg
 from assembly.ranges import short_mark
 from assembly.sheets import PAGE_WIDTH, Sheets
-from assembly.site_scenes import elevation_svg, feet_of, foot_sections, middle_of, numbers_of
+from assembly.site_scenes import elevation_svg, foot_sections
 from assembly.steel import strap_section_svg
 from assembly.steps import Step
 

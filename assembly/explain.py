@@ -18,18 +18,23 @@ _MOST_SHOWN = 8
 _RELATIONS = ("under", "over", "joined", "fastened")
 
 
+def _beams(graph: "nx.MultiGraph[str]") -> dict[str, str]:
+    """Return the coupled beam of each part, or ""."""
+    return {mark: str(values.get("beam", "")) for mark, values in graph.nodes(data=True)}
+
+
 def step_of_parts(plan: Plan, graph: "nx.MultiGraph[str]") -> dict[str, Step]:
     """Return the step in which each part comes to its place; parts of a coupled beam come when the beam is laid."""
     at = {mark: step for step in plan.steps for mark in step.marks}
     laid = {beam: step for step in plan.steps if step.phase in ("lay A1", "lay A2", "lay") for beam in step.assemblies}
-    return at | {mark: laid[beam] for mark, beam in graph.nodes(data="beam") if beam in laid}
+    return at | {mark: laid[beam] for mark, beam in _beams(graph).items() if beam in laid}
 
 
 def _piece(graph: "nx.MultiGraph[str]", mark: str) -> tuple[str, ...]:
     """Return the parts of a mark: those of a coupled beam, or the part itself; PlanError if there is none."""
     if mark in graph:
         return (mark,)
-    parts = tuple(node for node, beam in graph.nodes(data="beam") if beam == mark)
+    parts = tuple(node for node, beam in _beams(graph).items() if beam == mark)
     if not parts:
         known = sorted(node for node in graph if node.startswith(mark))[:_MOST_SHOWN]
         listed = ", ".join(known or sorted(graph)[:_MOST_SHOWN])
@@ -54,7 +59,7 @@ def _around(
     graph: "nx.MultiGraph[str]", parts: Sequence[str], at: Mapping[str, Step]
 ) -> dict[tuple[int, str], list[str]]:
     """Return what meets some parts by the number of the step in which it comes, and by relation."""
-    homes = {graph.nodes[mark].get("beam", ""): mark for mark in graph}
+    homes = {beam: mark for mark, beam in _beams(graph).items()}
     found: dict[tuple[int, str], list[str]] = defaultdict(list)
     for relation, mark in _neighbours(graph, parts):
         step = at.get(mark) or at.get(homes.get(mark, ""))

@@ -12,14 +12,16 @@ from typing import TypeAlias, TypeVar
 import networkx as nx
 import numpy as np
 
-from aag_cad.parts.model import Shell, Stud
+from aag_cad.parts.model import Gridshell, Shell, Stud
 from aag_cad.units import MM_PER_M, Floats, Vector
 from assembly.crew import LONG_PIECE
 from assembly.errors import PlanError
 from assembly.footpath import shorter_path
-from assembly.interlacing import Interlacing, Slide
+from assembly.graph import assembly_graph
+from assembly.interlacing import Interlacing, Slide, interlacing, refuse_left_out
+from assembly.language import Language
 from assembly.layers import layer_precedence, lying_unit
-from assembly.laying_units import Unit, units_of
+from assembly.laying_units import EDGE_FAMILY, Unit, units_of
 from assembly.view import shell_view, sweep_direction
 from assembly.walking import (
     Line,
@@ -42,7 +44,6 @@ _Sort: TypeAlias = tuple[str, int, str]
 
 # A path that saves less than this share keeps to whole rows, which a crew finds without a map.
 _WORTH_LEAVING_ROWS = 0.01
-EDGE_FAMILY = "E"
 STUD_KIND = "stud"
 
 
@@ -233,11 +234,14 @@ def _floor_order(
     )
 
 
-def flat_order(shell: Shell) -> FlatOrder:
+def flat_order(shell: Shell, woven: Interlacing | None = None) -> FlatOrder:
     """Return the order of laying a shell flat (paper section 3.2), its studs in whole ``courses`` from the foot up.
 
-    The floor is the shell seen square on. PlanError if the layers are woven so that no order exists.
+    The floor is the shell seen square on. ``woven`` is the interlacing of the graph of its gridshell, and says what is
+    slid in. PlanError if the layers are woven so that no order exists, without it even if planks could be slid in.
     """
+    if woven is not None:
+        refuse_left_out(woven)
     axes = shell_view(shell).axes[:2]
     ends: dict[str, list[Floats]] = defaultdict(list)
     sorts: dict[str, _Sort] = {}
@@ -249,7 +253,18 @@ def flat_order(shell: Shell) -> FlatOrder:
         lengths[unit] = max(lengths[unit], long)
     lines = {unit: _line(on_floor(np.mean(found, axis=0)), lengths[unit]) for unit, found in ends.items()}
     studs = {stud.mark: _point(on_floor(np.array(stud.frame.origin) @ axes.T)) for stud in shell.studs}
-    return _floor_order(lines, sorts, layer_precedence(shell), (), courses(stud_rows(shell), studs), studs)
+    precedence = woven.precedence if woven else layer_precedence(shell)
+    slides = [slide for slide in woven.slides if slide.unit in lines] if woven else []
+    return _floor_order(lines, sorts, precedence, slides, courses(stud_rows(shell), studs), studs)
+
+
+def flat_orders(gridshell: Gridshell, language: Language = "en") -> dict[str, FlatOrder]:
+    """Return the order of laying each shell flat, by mark, with what is slid in.
+
+    PlanError that names every circle of members of which none can be slid in.
+    """
+    woven = interlacing(assembly_graph(gridshell), language)
+    return {shell.mark: flat_order(shell, woven) for shell in gridshell.shells}
 
 
 def _places(graph: "nx.MultiGraph[str]", studs: Sequence[str], units: Mapping[str, Unit]) -> dict[str, Vector]:

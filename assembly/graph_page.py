@@ -9,7 +9,7 @@ import networkx as nx
 import numpy as np
 
 from aag_cad.units import Floats
-from assembly.booklet_words import booklet_words
+from assembly.booklet_words import booklet_words, finding_line
 from assembly.drawing import Style, circle, group, label_svg, path, placed_labels, places_along, svg
 from assembly.interlacing import interlacing
 from assembly.laying_units import Unit, units_of
@@ -93,8 +93,8 @@ def _chapters(plan: Plan, words: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 def _findings(plan: Plan, words: Mapping[str, Any]) -> Iterator[str]:
     if plan.findings:
-        lines = "".join(f"<li>{escape(str(finding))}</li>" for finding in plan.findings)
-        yield f'<section id="findings"><h2>{escape(words["page"]["findings"])}</h2><ul>{lines}</ul></section>'
+        lines = "".join(f"<li>{escape(finding_line(finding, plan.language))}</li>" for finding in plan.findings)
+        yield f'<section id="findings"><h2>{escape(words["findings"]["title"])}</h2><ul>{lines}</ul></section>'
 
 
 def graph_html(plan: Plan, schedule: Schedule, graph: "nx.MultiGraph[str]") -> str:

@@ -232,7 +232,7 @@ def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float, lang
     put in (AAG956), which is in no step, and what is heavy (AAG955). PlanError if the graph has faults, a part is tied
     to nothing, or the crew is empty.
     """
-    crew, woven, units = crew_of(people, lift_limit), interlacing(graph, language), units_of(graph)
+    crew, woven, units = crew_of(people, lift_limit), interlacing(graph, language, later=()), units_of(graph)
     order, kits = flat_order_of(graph, woven, later=()), _kits(graph, units)
     task = _Task(graph, units, kits, woven, order, _weights(graph, kits, units), crew, language)
     placed = {mark: unit for unit, kit in kits.items() for mark in kit}

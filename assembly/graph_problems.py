@@ -40,6 +40,7 @@ class GraphProblem:
         return f"{self.where}: {self.attribute} {self.value}, allowed: {self.allowed}; {self.remedy}"
 
 
+_Edge: TypeAlias = tuple[str, str, object, dict[str, Any]]
 _Rule: TypeAlias = tuple[Callable[[Any], bool], str]
 
 
@@ -111,28 +112,41 @@ def _crossing(
                 )
 
 
+def _node(mark: object, values: Mapping[str, Any], laid: bool) -> Iterator[GraphProblem]:
+    needed = ("kind", "mass_kg", "length_mm", "start", "end") if laid else ("kind", "mass_kg", "length_mm")
+    yield from _wrong(str(mark), values, needed, _NODE)
+    if not _NAME[0](mark):
+        yield GraphProblem(repr(mark), "mark", repr(mark), _NAME[1], "name the node by a text")
+    elif "start" in values and values["start"] == values.get("end"):
+        found = repr(values["end"])
+        yield GraphProblem(str(mark), "end", found, "another point than start", "give both ends of the line")
+
+
+def _edge(graph: "nx.MultiGraph[str]", a: str, b: str, values: Mapping[str, Any]) -> Iterator[GraphProblem]:
+    where = f"edge {a} - {b}" + (f" at {values['joint']}" if values.get("joint") else "")
+    yield from _wrong(where, values, ("kind",), _EDGE)
+    if a == b:
+        yield GraphProblem(where, "ends", str(a), "two different nodes", "leave the edge out")
+    elif values.get("kind") == "crossing":
+        yield from _crossing(graph, (a, b), where, values)
+
+
+def _problems(graph: "nx.MultiGraph[str]", edges: list[_Edge], laid_only: bool) -> tuple[GraphProblem, ...]:
+    crossing = {end for a, b, _, values in edges if values.get("kind") == "crossing" for end in (a, b)}
+    found: list[tuple[tuple[str, ...], GraphProblem]] = []
+    for mark, values in graph.nodes(data=True):
+        laid = mark in crossing or is_laid(values)
+        if laid or not laid_only:
+            found += [(("node", str(mark)), problem) for problem in _node(mark, values, laid)]
+    for a, b, key, values in edges:
+        order = ("with", *sorted((str(a), str(b))), str(key))
+        found += [(order, problem) for problem in _edge(graph, a, b, values)]
+    return tuple(problem for _, problem in sorted(found, key=lambda pair: pair[0]))
+
+
 def graph_problems(graph: "nx.MultiGraph[str]") -> tuple[GraphProblem, ...]:
     """Return every fault of a graph by its nodes, then its edges, each in the order of their marks."""
-    found: list[GraphProblem] = []
-    crossing = {end for a, b, edge in graph.edges(data=True) if edge.get("kind") == "crossing" for end in (a, b)}
-    for mark in sorted(graph, key=str):
-        values = graph.nodes[mark]
-        laid = ("start", "end") if mark in crossing or is_laid(values) else ()
-        found += _wrong(str(mark), values, ("kind", "mass_kg", "length_mm", *laid), _NODE)
-        if not _NAME[0](mark):
-            found.append(GraphProblem(repr(mark), "mark", repr(mark), _NAME[1], "name the node by a text"))
-        elif "start" in values and values["start"] == values.get("end"):
-            found.append(
-                GraphProblem(mark, "end", repr(values["end"]), "another point than start", "give both ends of the line")
-            )
-    for a, b, _, values in sorted(graph.edges(keys=True, data=True), key=lambda edge: tuple(map(str, edge[:3]))):
-        where = f"edge {a} - {b}" + (f" at {values['joint']}" if values.get("joint") else "")
-        found += _wrong(where, values, ("kind",), _EDGE)
-        if a == b:
-            found.append(GraphProblem(where, "ends", str(a), "two different nodes", "leave the edge out"))
-        elif values.get("kind") == "crossing":
-            found += _crossing(graph, (a, b), where, values)
-    return tuple(found)
+    return _problems(graph, list(graph.edges(keys=True, data=True)), laid_only=False)
 
 
 def refuse(problems: tuple[GraphProblem, ...]) -> None:
@@ -143,6 +157,11 @@ def refuse(problems: tuple[GraphProblem, ...]) -> None:
         raise PlanError(f"{len(problems)} fault{'s' * (len(problems) > 1)} in the graph:\n" + "\n".join(shown))
 
 
-def refuse_problems(graph: "nx.MultiGraph[str]") -> None:
-    """Raise PlanError if a graph has any fault."""
-    refuse(graph_problems(graph))
+def refuse_unlayable(graph: "nx.MultiGraph[str]") -> None:
+    """Raise PlanError with the faults of what is laid and of its crossings, and of edges of unknown kinds."""
+    edges = [
+        edge
+        for edge in graph.edges(keys=True, data=True)
+        if edge[3].get("kind") == "crossing" or edge[3].get("kind") not in EDGE_KINDS
+    ]
+    refuse(_problems(graph, edges, laid_only=True))

@@ -10,7 +10,7 @@ import networkx as nx
 from aag_cad.findings import Finding
 from assembly.circles import circle_links, few_out, knots, part_of, relations
 from assembly.errors import PlanError
-from assembly.graph_problems import refuse_problems
+from assembly.graph_problems import refuse_unlayable
 from assembly.language import Language, say
 from assembly.laying_units import EDGE_FAMILY, Crossing, crossings_of, units_of
 from assembly.sliding import End, Hindrance, Sliding, Why, slidings
@@ -131,7 +131,7 @@ def interlacing(
     floor yet and so are in nobody's way, edge planks (family E) if it is None. A circle that no slide resolves is an
     AAG951 in ``findings``.
     """
-    refuse_problems(graph)
+    refuse_unlayable(graph)
     units = units_of(graph)
     absent = {mark for mark, unit in units.items() if unit.family == EDGE_FAMILY} if later is None else set(later)
     crossings, meetings = crossings_of(graph)

@@ -17,6 +17,7 @@ from assembly.drawing import Style, group, line, path, rectangle, svg, text
 from assembly.errors import PlanError
 from assembly.flattening import beam_width
 from assembly.language import Language, say
+from assembly.names import figure
 from assembly.sections import callout
 from assembly.view import shell_view
 
@@ -238,16 +239,20 @@ def _together(node: _Node, shell: Shell, centre: Floats, language: Language) -> 
         _INK,
     )
     faces = [half, *(layer * node.offset + side * wide / 2.0 for layer in (1, -1) for side in (1, -1)), -half]
-    yield from _heights(faces, x - k * (aside + 36.0), x - k * 4.0, centre, "end")
+    yield from _heights(faces, x - k * (aside + 36.0), x - k * 4.0, centre, "end", language)
     right = x + k * (aside + flat.width)
-    yield from _heights([flat.thickness / 2.0, -flat.thickness / 2.0], right + 40.0, right + 6.0, centre, "start")
+    yield from _heights(
+        [flat.thickness / 2.0, -flat.thickness / 2.0], right + 40.0, right + 6.0, centre, "start", language
+    )
     for word, height in (("outside", half), ("inside", -half)):
         up = -1.0 if height > 0.0 else 1.0
         yield group([text(say(language, f"drawings.layers.{word}"), x, y - k * height + up * 34.0, _WORDS)], _INK)
     yield group([text(say(language, "drawings.layers.heights"), x, y + k * half + 78.0, _FIGURES)], _INK)
 
 
-def _heights(heights: list[float], x: float, to_x: float, centre: Floats, anchor: str) -> Iterator[str]:
+def _heights(
+    heights: list[float], x: float, to_x: float, centre: Floats, anchor: str, language: Language
+) -> Iterator[str]:
     """Yield heights above the surface as figures one above the other, with lines to what they measure."""
     places: list[float] = []
     for height in heights:
@@ -258,7 +263,7 @@ def _heights(heights: list[float], x: float, to_x: float, centre: Floats, anchor
         y, at = place + shift, float(centre[1]) - _SECTION_UNITS * height
         knee = x + 0.35 * (to_x - x)
         yield line(np.array([(x, y), (knee, at), (to_x, at)]), Style("none", "#000", 1.0))
-        words = f"{height:+.0f}" if abs(height - round(height)) < 0.05 else f"{height:+.1f}"
+        words = figure(f"{height:+.1f}".removesuffix(".0"), language)
         yield group([text(words, x + (-8.0 if anchor == "end" else 8.0), y, _FIGURES, anchor)], _INK)
 
 

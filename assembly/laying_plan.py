@@ -32,6 +32,7 @@ from assembly.errors import PlanError
 from assembly.flat import FlatOrder
 from assembly.flattening import FlatMember, FlatState, outline_of
 from assembly.language import Language, say, says
+from assembly.names import figure
 from assembly.ranges import short_mark
 
 Page: TypeAlias = Literal["a4", "a3"]
@@ -194,7 +195,7 @@ def _swatch(x: float, y: float, sheet: _Sheet, family: str, shell: Shell, width:
 def _key(shell: Shell, state: FlatState, sheet: _Sheet, language: Language) -> Iterator[str]:
     """Yield the line below the plan: what is drawn how, the scale and the size of the floor."""
     widths = {member.family: member.width for member in state.members}
-    y, x = sheet.height - 88.0, 20.0
+    y, x = sheet.height - 94.0, 20.0
     for family, word in (("A1", "layers"), ("G", "between"), ("A2", "above")):
         if family in widths:
             yield _swatch(x, y, sheet, family, shell, widths[family])
@@ -227,8 +228,7 @@ def _scale_bar(state: FlatState, sheet: _Sheet, language: Language) -> Iterator[
         )
     numbers = [text(str(i), x + i * metre, y - 26.0, 0.8 * _WORDS) for i in range(count + 1)]
     unit = text(say(language, "drawings.plan.metre"), x + count * metre + 18.0, y, _WORDS, "start")
-    size = [f"{value / MM_PER_M:.2f}" for value in state.size]
-    size = [value.replace(".", ",") for value in size] if language == "de" else size
+    size = [figure(f"{value / MM_PER_M:.2f}", language) for value in state.size]
     words = say(language, "drawings.plan.floor", x=size[0], y=size[1])
     if state.left_open:
         words += "; " + say(language, "drawings.plan.open", count=len(state.left_open))
@@ -273,18 +273,16 @@ def laying_plan_svg(
 
 
 def _piles(stacks: dict[str, Floats], sheet: _Sheet, language: Language) -> tuple[str, list[Box]]:
+    """Return the stacks beside the floor, those in the same place side by side, and their boxes."""
     boxes: list[Box] = []
-    shapes = ""
-    for family, place in stacks.items():
+    shapes, end = "", -np.inf
+    for family, place in sorted(stacks.items(), key=lambda item: (round(float(item[1][1])), float(item[1][0]))):
         x, y = sheet(place[None])[0].tolist()
         words = say(language, "drawings.plan.stack", family=family)
         half = 0.602 * _WORDS * len(words) / 2.0 + 14.0
-        x = min(max(x, half), sheet.width - half)
-        while any(
-            abs(x - (b[0] + b[2]) / 2.0) < half + (b[2] - b[0]) / 2.0 and abs(y - (b[1] + b[3]) / 2.0) < 50.0
-            for b in boxes
-        ):
-            y += 52.0
+        beside = bool(boxes) and abs(y - (boxes[-1][1] + boxes[-1][3]) / 2.0) < 50.0
+        x = max(x, end + half + 8.0) if beside else min(max(x, half), sheet.width - half)
+        end = x + half
         boxes.append((x - half, y - 24.0, x + half, y + 24.0))
         shapes += group([rectangle(x - half, y - 24.0, 2.0 * half, 48.0)], _STACK)
         shapes += group([text(words, x, y, _WORDS, bold=True)], _INK)

@@ -30,6 +30,8 @@ def _front(data: Mapping[str, Any], pictures: Mapping[str, str]) -> Iterator[str
     words, cover = data["words"], data["cover"]
     yield pictures[cover["picture"]]
     yield f"<p>{escape(cover['told'])}</p>"
+    if data["findings"]:
+        yield f"<h3>{escape(words['findings']['title'])}</h3>{html_list(data['findings'])}"
     yield contents(data["chapters"], words["page"]["contents"], words["list"]["hold"])
     lines = "".join(f"<li>{rich_text(line, pictures)}</li>" for line in words["read"]["lines"])
     yield f'<section id="read"><h2>{escape(words["read"]["title"])}</h2><ul>{lines}</ul></section>'

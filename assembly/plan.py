@@ -10,12 +10,14 @@ from aag_cad.parts.quantities import mass, sizes
 from aag_cad.parts.store import value_of
 from assembly.crew import Crew, crew_of, hands_for, lifting_findings
 from assembly.errors import PlanError
+from assembly.flat import FlatOrder, flat_orders
 from assembly.kit import shell_kit
 from assembly.language import Language, say
 from assembly.locking import LockingOrder
+from assembly.parting import divide_works, made_with_splices
 from assembly.process import Work, shell_works
 from assembly.segments import Segmentation, segment_findings
-from assembly.site import divide_works, made_with_splices, site_works
+from assembly.site import site_works
 from assembly.steps import Phase, Plan, Step
 from assembly.wording import Fastener, fasteners_by_kind, wording
 
@@ -90,22 +92,25 @@ def plan_of(
     people: int,
     lift_limit: float,
     *,
+    orders: Mapping[str, FlatOrder] | None = None,
     locking: Sequence[LockingOrder] = (),
     segmentation: Segmentation | None = None,
     language: Language = "en",
 ) -> Plan:
     """Return the assembly plan for a crew of ``people`` who lift at most ``lift_limit`` kg each (paper section 3.2).
 
-    The geodesics are fixed in the order of ``locking``, one for each shell; without it by their marks. Shells that
+    ``orders`` say how each shell is laid flat, by mark (none: ``flat_orders``). The geodesics are fixed in the order of ``locking``, one for each shell; without it by their marks. Shells that
     ``segmentation`` cuts are parted for the journey and joined again on site. PlanError if the layers are woven so that
     no plank can be slid in, a part belongs to no joint, or the crew is empty.
     """
     crew, weights = crew_of(people, lift_limit), piece_weights(gridshell)
-    orders = {order.shell: order for order in locking}
+    locked = {order.shell: order for order in locking}
+    laid = orders if orders is not None else flat_orders(gridshell, language)
     chapters: list[tuple[str, Sequence[Shell], tuple[Work, ...]]] = []
     for shell in gridshell.shells:
-        works = tuple(made_with_splices(shell_works(shell, orders.get(shell.mark), language), segmentation, language))
-        chapters.append((shell.mark, (shell,), (*works, *divide_works(shell, segmentation, language))))
+        works = shell_works(shell, laid[shell.mark], locked.get(shell.mark), language)
+        spliced = made_with_splices(works, segmentation, language)
+        chapters.append((shell.mark, (shell,), (*spliced, *divide_works(shell, segmentation, language))))
     chapters.append(("", gridshell.shells, site_works(gridshell, segmentation, language, locking)))
     steps: list[Step] = []
     for name, shells, works in chapters:
@@ -113,8 +118,8 @@ def plan_of(
         for i, work in enumerate(works):
             last = work.phase in _EACH_HELD or all(later.phase != work.phase for later in works[i + 1 :])
             steps.append(_step(work, len(steps) + 1, last, name, fasteners, crew, weights, language))
-    shells = {shell.mark for shell in gridshell.shells}
-    carried = {mark: weight for mark, weight in weights.items() if mark not in shells}
+    craned = {shell.mark for shell in gridshell.shells}
+    carried = {mark: weight for mark, weight in weights.items() if mark not in craned}
     findings = (
         *lifting_findings(carried, crew, language),
         *(segment_findings(segmentation) if segmentation else ()),

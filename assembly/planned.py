@@ -1,11 +1,14 @@
 """Everything that is planned for a gridshell: assembly with its schedule, locking order, segments, taking down."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 from aag_cad.design_making import Crew, Transport
 from aag_cad.parts.model import Gridshell
 from assembly.disassembly import disassembly_of
 from assembly.durations import step_minutes
+from assembly.flat import FlatOrder, flat_orders
+from assembly.flattening import FlatState, flat_findings, flat_state
 from assembly.language import Language
 from assembly.locking import LockingOrder, locking_orders
 from assembly.plan import plan_of
@@ -17,10 +20,15 @@ from assembly.steps import Plan
 
 @dataclass(frozen=True)
 class Planned:
-    """What is planned for a gridshell: how it goes up, how its shells are locked and cut, how it comes down, when."""
+    """What is planned for a gridshell: how it goes up, how its shells are locked and cut, how it comes down, when.
+
+    ``orders`` say in which order each shell is laid flat, ``flat`` where each shell with studs lies on the floor, by mark.
+    """
 
     plan: Plan
     schedule: Schedule
+    orders: Mapping[str, FlatOrder]
+    flat: Mapping[str, FlatState]
     locking: tuple[LockingOrder, ...]
     segmentation: Segmentation
     down: Plan
@@ -56,6 +64,15 @@ def planned_of(
         return schedule_of(plan, step_minutes(plan, gridshell, crew.minutes), crew.people, crew.hours_per_day)
 
     locking, found = locking_orders(gridshell, edges_first=edges_first), segments(gridshell, limits, language)
-    plan = plan_of(gridshell, crew.people, crew.lift_limit, locking=locking, segmentation=found, language=language)
-    down = disassembly_of(gridshell, crew.people, crew.lift_limit, language=language)
-    return Planned(plan, scheduled(plan), locking, found, down, scheduled(down))
+    orders, size = flat_orders(gridshell, language), (crew.people, crew.lift_limit)
+    plan = plan_of(gridshell, *size, orders=orders, locking=locking, segmentation=found, language=language)
+    flat = {shell.mark: flat_state(shell) for shell in gridshell.shells if shell.studs}
+    lying = (
+        finding
+        for shell in gridshell.shells
+        if shell.mark in flat
+        for finding in flat_findings(shell, flat[shell.mark], gridshell.timber, language)
+    )
+    plan = replace(plan, findings=(*plan.findings, *lying))
+    down = disassembly_of(gridshell, *size, orders=orders, language=language)
+    return Planned(plan, scheduled(plan), orders, flat, locking, found, down, scheduled(down))

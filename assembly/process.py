@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import chain, groupby
 
 from aag_cad.parts.model import Shell
-from assembly.flat import FlatOrder, flat_order, groups_of, row_groups
+from assembly.flat import FlatOrder, groups_of, row_groups
 from assembly.kit import Kit, shell_kit
 from assembly.language import Language, say
 from assembly.locking import LockingOrder
@@ -215,14 +215,16 @@ def _locking(task: _Task, before: str, locking: LockingOrder | None) -> Iterator
     yield Work(f"{name}.tighten", "tighten", title, after=(before,), least_crew=PAIR, props=props)
 
 
-def shell_works(shell: Shell, locking: LockingOrder | None = None, language: Language = "en") -> tuple[Work, ...]:
-    """Return the work that makes one stiff shell, in an order in which it can be done.
+def shell_works(
+    shell: Shell, order: FlatOrder, locking: LockingOrder | None = None, language: Language = "en"
+) -> tuple[Work, ...]:
+    """Return the work that makes one stiff shell laid out in a flat order, in an order in which it can be done.
 
     Edge planks and geodesics are fixed in the order of ``locking``, two groups of geodesics in a step, on the props
-    that it proposes; without one, edge planks first, then the geodesics in the order of their marks. PlanError if the
-    layers are woven so that no plank can be slid in, or a part belongs to no joint.
+    that it proposes; without one, edge planks first, then the geodesics in the order of their marks. PlanError if a
+    part belongs to no joint.
     """
-    task = _Task(shell, shell_kit(shell), flat_order(shell), language)
+    task = _Task(shell, shell_kit(shell), order, language)
     name = shell.mark
     making = list(_prefabrication(task))
     made = {beam: work.id for beam, marks in task.kit.beams.items() for work in making if marks[0] in work.marks}

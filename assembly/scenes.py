@@ -14,12 +14,13 @@ from assembly.flat import flat_order
 from assembly.graph import joint_of
 from assembly.kit import driven_from_outside
 from assembly.outline import shell_outline
+from assembly.picture_marks import middle_of, numbers_of
 from assembly.pictures import NEW, PIECES, STEEL, THERE, Scene, prop_items, scene_svg
 from assembly.ranges import short_mark
-from assembly.segment_scenes import segment_scene, stood_segments
+from assembly.segment_scenes import cut_outline, moved_segments, segment_scene
 from assembly.segments import Segmentation
 from assembly.sheets import MARGIN, PAGE_WIDTH, Sheets, sheets_of, twin_mark, twin_step
-from assembly.site_scenes import elevation_svg, foot_sections, middle_of, numbers_of, ridge_pictures, site_svg
+from assembly.site_scenes import elevation_svg, foot_sections, ridge_pictures, site_svg
 from assembly.steel import strap_section_svg
 from assembly.steps import DOWN_PHASES, Plan, Step
 
@@ -145,8 +146,8 @@ def _twinned(sheets: Sheets, step: Step) -> tuple[Shell, Step, frozenset[str]]:
 def _segment_pictures(sheets: Sheets, step: Step, segmentation: Segmentation) -> tuple[str, ...]:
     """Return the pictures of a step with segments of a shell: the shell square on, and its plan where it stands."""
     shell = next(shell for shell in sheets.gridshell.shells if shell.mark == step.assemblies[0])
-    outline = shell_outline(shell, PAGE_WIDTH, MARGIN)
-    picture = scene_svg(outline, segment_scene(shell, step, segmentation, sheets.standing[step.id]))
+    outline = cut_outline(shell_outline(shell, PAGE_WIDTH, MARGIN), shell, segmentation)
+    picture = scene_svg(outline, segment_scene(shell, step, segmentation, sheets.stood[step.id]))
     return (picture, *(foot_sections(shell, sheets.language) if step.phase == "stand" and step.marks else ()))
 
 
@@ -162,7 +163,7 @@ def step_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
     """Return the SVG pictures of a step of putting together or of taking down: the large one first."""
     if step.phase in ("ridges", "open ridges") and step.assemblies in sheets.ridges:
         return ridge_pictures(sheets, step)
-    if sheets.segmentation and (step.phase == "divide" or stood_segments(step, sheets.segmentation)):
+    if sheets.segmentation and (step.phase == "divide" or moved_segments(step, sheets.segmentation)):
         return _segment_pictures(sheets, step, sheets.segmentation)
     if not home_shell(step):
         sections = (

@@ -108,12 +108,12 @@ def hopeless_finding(item: Divisible, limits: Limits, wished: str, language: Lan
 
 
 def lifting_finding(segment: str, lifting: Lifting, language: Language = "en") -> Finding | None:
-    """Return that a segment cannot be slung by three studs (AAG963), None if it can."""
+    """Return that a segment cannot be slung by three joints (AAG963, a warning: a spreader helps), None if it can."""
     if lifting.studs:
         return None
     found = max(lifting.margin, 0.0)
     what, remedy = _words(language, "sling"), _words(language, "sling_remedy")
-    return Finding("AAG963", "error", segment, what, found, LEAST_MARGIN, "mm", remedy)
+    return Finding("AAG963", "warning", segment, what, found, LEAST_MARGIN, "mm", remedy)
 
 
 def splice_finding(splice: Splice, language: Language = "en") -> Finding | None:

@@ -231,9 +231,9 @@ def segment_svg(gridshell: Gridshell, segmentation: Segmentation, segment: Segme
     """Return the picture of a segment, 180 mm wide: its shell square on, the segment dark over pale grey, and its load.
 
     H are the studs to sling it by, P those under its props, the quartered circle is its centre of gravity, double lines
-    are braces, dashed ones cuts; black dots are splices along its geodesics, numbered as on its card, rings those
-    of its other cut ends. Below: the segment in the room of the transport from the side and from the end, with the sizes of
-    the box that it takes, mm.
+    are braces, dashed ones cuts; black dots are splices along its geodesics, numbered as on its card, rings those of
+    its other cut ends. Below: the segment in the room of the transport from the side and from the end, with the sizes
+    of the box that it takes, mm.
     """
     shell = next(shell for shell in gridshell.shells if shell.mark == segment.shell)
     outline = shell_outline(shell, WIDTH, _MARGIN)

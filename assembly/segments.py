@@ -62,8 +62,8 @@ class Segment:
 class Segmentation:
     """How a gridshell is divided: segments, splices, and the fasteners put in on site because they join segments.
 
-    ``changes`` are warnings: what a shell that is cut would need to travel whole; ``problems`` are errors: what must
-    change because it cannot be cut, slung or spliced so.
+    ``changes`` are warnings: what a shell that is cut would need to travel whole; ``problems`` are what must change
+    because it cannot be cut or spliced so (errors), or cannot be slung by three joints (warnings).
     """
 
     limits: Limits

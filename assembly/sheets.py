@@ -25,6 +25,7 @@ from assembly.kit import shell_kit
 from assembly.language import Language
 from assembly.outline import Outline, ridge_outline, shell_outline, vault_outline
 from assembly.ranges import short_mark
+from assembly.segment_scenes import stood_segments
 from assembly.segments import Segmentation
 from assembly.steps import DOWN_PHASES, Plan, Step
 
@@ -40,7 +41,8 @@ class Sheets:
     """The outlines that the pictures of a gridshell are drawn from, and what is in place before each step.
 
     ``twins`` gives for each shell the first one that is alike but for its number; ``large`` and ``small`` are the
-    outlines of these. ``standing`` are the planks that stand on the site before each step.
+    outlines of these. ``standing`` are the planks of the whole shells, ``stood``
+    the segments of cut ones, that stand on the site before each step.
     """
 
     gridshell: Gridshell
@@ -51,6 +53,7 @@ class Sheets:
     ridges: dict[tuple[str, ...], Outline]
     before: dict[str, frozenset[str]]
     standing: dict[str, frozenset[str]]
+    stood: dict[str, tuple[str, ...]]
     segmentation: Segmentation | None
     language: Language
 
@@ -123,25 +126,16 @@ def _still_there(plan: Plan, gridshell: Gridshell) -> dict[str, frozenset[str]]:
     return found
 
 
-def _segment_planks(segmentation: Segmentation | None) -> dict[str, set[str]]:
-    """Return the planks of which each segment has the whole or a piece, by the id of the step that sets it down."""
-    listed = segmentation.segments if segmentation else ()
-    return {f"site.stand.{s.name}": {*s.parts, *(piece.plank for piece in s.pieces)} for s in listed}
-
-
-def _standing(
-    plan: Plan, gridshell: Gridshell, segmentation: Segmentation | None, down: bool
-) -> dict[str, frozenset[str]]:
-    """Return for each step id the planks of the shells or segments that stand on the site before it."""
+def _standing(plan: Plan, gridshell: Gridshell, down: bool) -> dict[str, frozenset[str]]:
+    """Return for each step id the planks of the shells that stand on the site before it, in whole or in part."""
     planks = {shell.mark: {plank.mark for plank in shell.planks} for shell in gridshell.shells}
-    segments = _segment_planks(segmentation)
     standing = set[str]().union(*planks.values()) if down else set[str]()
     found = {}
     for step in plan.steps:
         found[step.id] = frozenset(standing)
         moved = {mark for assembly in step.assemblies for mark in planks.get(assembly, ())}
         if step.phase == "stand":
-            standing |= moved & segments.get(step.id, moved)
+            standing |= moved
         if step.phase == "lift off":
             standing -= moved
     return found
@@ -182,7 +176,8 @@ def sheets_of(plan: Plan, gridshell: Gridshell, segmentation: Segmentation | Non
             if step.phase in ("ridges", "open ridges") and (pair := ridge_planks(gridshell, step.assemblies))
         },
         before=_still_there(plan, gridshell) if down else _in_place(plan, gridshell),
-        standing=_standing(plan, gridshell, segmentation, down),
+        standing=_standing(plan, gridshell, down),
+        stood=stood_segments(plan, segmentation),
         segmentation=segmentation,
         language=plan.language,
     )

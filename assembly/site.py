@@ -1,12 +1,7 @@
-"""The work on site: feet, standing shells, ridges, cover (paper section 3.2); shells cut for the journey and joined.
-
-A shell that is cut is put together whole in the workshop, because only whole it takes its shape: its beams and edge
-planks are made with their splices from the start. Every part is added there once; what the parting takes out and the
-joining puts in again are ``extras`` of these steps, and so are bracing and props.
-"""
+"""The work on site: feet, standing shells, segments joined again, ridges, cover (paper section 3.2)."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from aag_cad.parts.marks import parse_mark, shell_of
@@ -15,14 +10,11 @@ from assembly.graph import joint_of
 from assembly.kit import Kit, shell_kit
 from assembly.language import Language, say
 from assembly.locking import LockingOrder
+from assembly.parting import brace_extras, seam_extras
 from assembly.process import EVERYONE, PAIR, Work
 from assembly.ranges import joined_ranges, short_mark
-from assembly.seams import Seam, foot_joints, seams, segments_of, standing_order
-from assembly.segment_sheet import brace_words
+from assembly.seams import Seam, foot_joints, segments_of, standing_order
 from assembly.segments import Segment, Segmentation
-from assembly.splices import Splice
-
-_KINDS = {"W": "screw", "B": "bolt", "K": "block", "R": "strap", "N": "stud"}
 
 
 @dataclass(frozen=True)
@@ -49,96 +41,6 @@ def ridge_pairs(gridshell: Gridshell) -> tuple[tuple[str, str], ...]:
         ring = zip(marks, (*marks[1:], marks[0]), strict=True)
         pairs = {(min(a, b), max(a, b)) for a, b in ring if a != b}
     return tuple(sorted(pairs))
-
-
-def _fasteners(language: Language, marks: Sequence[str]) -> str:
-    """Return how many fasteners of each kind there are, in words."""
-    kinds = Counter(_KINDS.get(parse_mark(mark).part[:1] or parse_mark(mark).family, "bolt") for mark in marks)
-    counted = ((kind if count == 1 else f"{kind}s", count) for kind, count in sorted(kinds.items()))
-    return ", ".join(say(language, f"site.count.{kind}", count=count) for kind, count in counted)
-
-
-def _seam_extras(language: Language, seam: Seam, chapter: str) -> Iterator[str]:
-    """Yield what is taken out at a seam (``divide``) or put in again (``splice``): splices with bolts, fasteners."""
-    for splice in seam.splices:
-        side = "inside" if parse_mark(splice.member).family == "A1" else "outside"
-        yield say(
-            language,
-            f"site.{chapter}.{splice.kind}",
-            line=short_mark(splice.line),
-            beam=short_mark(splice.member),
-            joint=short_mark(splice.joint) if splice.joint else "",
-            bolts=splice.bolts,
-            diameter=splice.diameter,
-            length=splice.length,
-            side=say(language, f"site.{chapter}.{side}"),
-        )
-    if seam.fasteners:
-        joints = joined_ranges(tuple(dict.fromkeys(map(joint_of, seam.fasteners))))
-        told = _fasteners(language, seam.fasteners)
-        yield say(language, f"site.{chapter}.fasteners", line=short_mark(seam.line), fasteners=told, joints=joints)
-    yield say(language, f"site.{chapter}.lash", line=short_mark(seam.line), keeper=seam.keeper)
-
-
-def _brace_extras(language: Language, segment: Segment, chapter: str) -> Iterator[str]:
-    for brace in segment.braces:
-        yield say(language, f"site.{chapter}.brace", segment=segment.name, brace=brace_words(brace, language))
-
-
-def _made(language: Language, splice: Splice) -> str:
-    stations = [cut.station for cut in splice.cuts]
-    return say(
-        language,
-        f"site.made.{splice.kind}",
-        beam=short_mark(splice.member),
-        line=short_mark(splice.line),
-        joint=short_mark(splice.joint) if splice.joint else "",
-        left=stations[0],
-        right=stations[-1],
-        length=splice.length,
-        bolts=splice.bolts,
-        diameter=splice.diameter,
-    )
-
-
-def made_with_splices(
-    works: Iterable[Work], segmentation: Segmentation | None, language: Language = "en"
-) -> Iterator[Work]:
-    """Yield works in which beams and edge planks that are cut for the journey are made with their splices.
-
-    The works that add their planks get an extra for each splice: where the planks are parted, block or plate, bolts.
-    """
-    splices = segmentation.splices if segmentation else ()
-    for work in works:
-        added = set(work.marks)
-        cut = [splice for splice in splices if any(cut.plank in added for cut in splice.cuts)]
-        yield replace(work, extras=(*work.extras, *(_made(language, splice) for splice in cut))) if cut else work
-
-
-def divide_works(shell: Shell, segmentation: Segmentation | None = None, language: Language = "en") -> tuple[Work, ...]:
-    """Return the work that parts a stiff shell into its segments for the journey; none if it travels whole.
-
-    Extras: the bracing of each segment, and what comes out of the splices and joints along each cut. Props: those that
-    each segment bears on when it is parted.
-    """
-    own, cuts = segments_of(segmentation, shell.mark), seams(shell, segmentation)
-    if not own:
-        return ()
-    lines = ", ".join(dict.fromkeys(short_mark(seam.line) for seam in cuts))
-    braces = (extra for segment in own for extra in _brace_extras(language, segment, "divide"))
-    names = ", ".join(segment.name for segment in own)
-    work = Work(
-        f"{shell.mark}.divide",
-        "divide",
-        say(language, "site.divide.title", shell=shell.mark, segments=names),
-        after=(f"{shell.mark}.tighten",),
-        assemblies=(shell.mark,),
-        least_crew=EVERYONE,
-        props=tuple(dict.fromkeys(mark for segment in own for mark in segment.props)),
-        extras=(*braces, *(extra for seam in cuts for extra in _seam_extras(language, seam, "divide"))),
-        notes=(say(language, "site.divide.order", lines=lines),),
-    )
-    return (work,)
 
 
 def _crown_props(site: _Site, shell: Shell) -> tuple[str, ...]:
@@ -205,7 +107,7 @@ def _segment_works(site: _Site, shell: Shell, kit: Kit, feet: str) -> Iterator[W
         for seam in beside:
             open_seams.subtract((seam.keeper, seam.bare))
             whole = [named[name] for name in (seam.keeper, seam.bare) if not open_seams[name]]
-            bare = (extra for other in whole for extra in _brace_extras(site.language, other, "splice"))
+            bare = (extra for other in whole for extra in brace_extras(site.language, other, "splice"))
             splice = Work(
                 f"site.splice.{seam.keeper}.{seam.bare}",
                 "splice",
@@ -213,7 +115,7 @@ def _segment_works(site: _Site, shell: Shell, kit: Kit, feet: str) -> Iterator[W
                 after=before,
                 assemblies=(shell.mark,),
                 least_crew=2 * PAIR,
-                extras=(*_seam_extras(site.language, seam, "splice"), *bare),
+                extras=(*seam_extras(site.language, seam, "splice"), *bare),
             )
             yield splice
             before = (splice.id,)

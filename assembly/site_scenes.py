@@ -1,7 +1,6 @@
 """Pictures of the whole gridshell on its site, of its ridges, and of a shell from its side."""
 
 from collections.abc import Iterator, Sequence
-from typing import TypeVar
 
 import numpy as np
 
@@ -10,31 +9,15 @@ from assembly.control import control_figures
 from assembly.drawing import Label, Style, circle, group, label_svg, line, path, svg, text
 from assembly.language import Language
 from assembly.outline import Outline, elevation_outline, vault_outline
+from assembly.picture_marks import feet_of, middle_of, numbers_of
 from assembly.pictures import Scene, scene_items
 from assembly.sheets import MARGIN, ON_GROUND, SMALL_WIDTH, Sheets, ridge_planks
 from assembly.steel import blade_section_svg, foot_section_svg
 from assembly.steps import Step
 
-_T = TypeVar("_T")
-
 _KEY_WIDTH = 170.0
 _NAME_SIZE = 48.0
 _INK = Style("#000")
-
-
-def numbers_of(marks: Sequence[str]) -> dict[str, str]:
-    """Return marks with their last numbers."""
-    return {mark: mark.rpartition("-")[2] for mark in marks}
-
-
-def middle_of(pieces: Sequence[_T]) -> Sequence[_T]:
-    """Return the middle one of pieces as a list, an empty list without any."""
-    return pieces[len(pieces) // 2 : len(pieces) // 2 + 1]
-
-
-def feet_of(shell: Shell) -> tuple[str, ...]:
-    """Return the joints at which a shell stands on its shoes."""
-    return tuple(joint.mark for joint in shell.joints if joint.kind == "foot")
 
 
 def _site_scene(gridshell: Gridshell, step: Step, there: frozenset[str]) -> Scene:

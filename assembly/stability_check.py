@@ -64,6 +64,15 @@ def _stand_problems(
             yield f"{name}: its centre of gravity is outside its feet and the props of step {stand.id}: it falls"
 
 
+def _shoe_problems(plan: Plan, shell: Shell, segment: Segment, forced: dict[str, set[str]]) -> Iterator[str]:
+    """Yield the bolts of a segment's shoes that are put in before it stands."""
+    own, stand = set(segment.geodesics), f"site.stand.{segment.name}"
+    bolts = {m for joint in shell.joints if joint.kind == "foot" and own & set(joint.members) for m in joint.fasteners}
+    for step in plan.steps:
+        for mark in (mark for mark in step.marks if mark in bolts and stand not in {step.id, *forced[step.id]}):
+            yield f"{mark} bolts a shoe of {segment.name}, but nothing forces step {stand} before step {step.id}"
+
+
 def _cut_problems(plan: Plan, shell: Shell, own: Sequence[Segment]) -> Iterator[str]:
     """Yield what is wrong with the parting, the standing and the joining of the segments of one shell."""
     forced = ancestors(plan)
@@ -77,6 +86,7 @@ def _cut_problems(plan: Plan, shell: Shell, own: Sequence[Segment]) -> Iterator[
     for segment in own:
         found = stands[segment.name]
         yield from _stand_problems(shell, segment, found, parted, forced[found[0].id] if found else set())
+        yield from _shoe_problems(plan, shell, segment, forced)
     order = [step.id for step in plan.steps]
     first = min((order.index(steps[0].id) for steps in stands.values() if steps), default=-1)
     names = [segment.name for segment in own]

@@ -10,18 +10,21 @@ import networkx as nx
 
 from aag_cad.design_making import Crew
 from aag_cad.export.tables import write_locking_table, write_segment_tables
-from aag_cad.files import write_text
+from aag_cad.files import csv_text, write_text
 from aag_cad.parts.model import Gridshell
 from assembly.gantt import gantt_svg
 from assembly.graph import assembly_graph
 from assembly.graph_file import graph_json, graphml
 from assembly.ical import write_calendar
+from assembly.laying_plan import laying_rows
 from assembly.locking import locking_svg, plot_words
 from assembly.page import graph_html, write_page
 from assembly.plan import Plan, plan_json
 from assembly.planned import Planned
 from assembly.printout import write_disassembly, write_sequence
 from assembly.schedule import Schedule, schedule_csv
+
+LAYING_HEADER = ("shell", "mark", "what", "x_mm", "y_mm", "end_x_mm", "end_y_mm")
 
 
 @dataclass(frozen=True)
@@ -41,9 +44,18 @@ def write_schedule(plan: Plan, schedule: Schedule, title: str, crew: Crew, folde
         write_calendar(plan, schedule, date.fromisoformat(crew.start), folder / "schedule.ics", crew.days_per_week)
 
 
+def _laying_table(planning: Planning) -> str:
+    """Return where every member and stud lies on the floor, shell by shell, for setting out with tapes."""
+    flat, language = planning.planned.flat, planning.planned.plan.language
+    shells = [shell for shell in planning.gridshell.shells if shell.mark in flat]
+    rows = ((shell.mark, *row) for shell in shells for row in laying_rows(shell, flat[shell.mark], language))
+    return csv_text(LAYING_HEADER, rows)
+
+
 def _write_plan(planning: Planning, folder: Path) -> None:
     write_text(folder / "plan.json", plan_json(planning.planned.plan))
     write_text(folder / "disassembly.json", plan_json(planning.planned.down))
+    write_text(folder / "tables" / "laying.csv", _laying_table(planning))
 
 
 def _write_schedule(planning: Planning, folder: Path) -> None:

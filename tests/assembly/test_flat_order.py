@@ -134,6 +134,11 @@ def test_the_graph_of_the_vault_is_laid_as_its_shells_are(
     assert order.least_m <= order.walked_m <= 1.02 * order.least_m
 
 
+def test_a_shell_that_is_not_woven_is_laid_as_its_layers_say(gridshell: Gridshell, woven: Interlacing) -> None:
+    for shell in gridshell.shells:
+        assert flat_order(shell, woven) == flat_order(shell)
+
+
 def test_edge_planks_are_laid_only_when_asked_for(graph: "nx.MultiGraph[str]", woven: Interlacing) -> None:
     laid = {unit for run in flat_order_of(graph, woven, later=()).runs for unit in run}
     without = {unit for run in flat_order_of(graph, woven).runs for unit in run}

@@ -1,14 +1,12 @@
-"""Weaves: what is laid first, what is slid in afterwards, and what nobody can put together."""
+"""Drawn weaves: what is laid first, what is slid in afterwards, and what nobody can put together."""
 
 import math
-from dataclasses import dataclass
-from itertools import combinations, pairwise
+from itertools import pairwise
 
 import networkx as nx
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from weaving import Graph, Weave, flat, graph_of, square, walls
 
 from aag_cad.parts.model import Gridshell
 from assembly.errors import PlanError
@@ -17,280 +15,6 @@ from assembly.graph_file import graph_text, read_graph
 from assembly.interlacing import Interlacing, Slide, interlacing, refuse_left_out
 from assembly.sliding import bend_radius, free_way
 from assembly.weaves import circle_graph, kagome_graph
-
-Point = tuple[float, float]
-Graph = nx.MultiGraph
-
-
-@dataclass(frozen=True)
-class Member:
-    """A unit of a random weave: one plank, or two siblings 36 mm apart."""
-
-    mark: str
-    start: Point
-    end: Point
-    upright: bool
-    coupled: bool
-    radius: float
-
-    @property
-    def depth(self) -> float:
-        """Its size along the surface normal, mm."""
-        return 100.0 if self.upright else 12.0
-
-    @property
-    def length(self) -> float:
-        """Its length, mm."""
-        return math.dist(self.start, self.end)
-
-
-@dataclass(frozen=True)
-class Weave:
-    """Members and for each crossing the lower, the upper, and how far along them it lies."""
-
-    members: tuple[Member, ...]
-    crossings: tuple[tuple[str, str, float, float], ...]
-
-    def of(self, mark: str) -> Member:
-        """Return the member of a mark."""
-        return next(member for member in self.members if member.mark == mark)
-
-
-def met(a: tuple[Point, Point], b: tuple[Point, Point]) -> tuple[float, float] | None:
-    """Cramer's rule: the shares of two lines at which they cross, or None if they are parallel."""
-    (ax, ay), (bx, by) = (np.subtract(line[1], line[0]) for line in (a, b))
-    gx, gy = np.subtract(b[0], a[0])
-    turn = ax * by - ay * bx
-    if abs(turn) < 1e-6 * math.hypot(ax, ay) * math.hypot(bx, by):
-        return None
-    return float((gx * by - gy * bx) / turn), float((gx * ay - gy * ax) / turn)
-
-
-@st.composite
-def weaves(draw: st.DrawFn, most: int = 9) -> Weave:
-    place = st.integers(0, 40).map(lambda i: 100.0 * i)
-    anywhere = st.tuples(st.tuples(place, place), st.tuples(place, place))
-    # From side to side of the floor, so that most lines cross.
-    across = st.tuples(place, place).map(lambda y: ((0.0, y[0]), (4000.0, y[1])))
-    along = st.tuples(place, place).map(lambda x: ((x[0], 0.0), (x[1], 4000.0)))
-    members = []
-    for i, line in enumerate(draw(st.lists(st.one_of(across, along, anywhere), min_size=3, max_size=most))):
-        start, end = line
-        if math.dist(start, end) > 500.0:
-            upright = draw(st.sampled_from([False, False, True]))
-            kind = (upright, upright and draw(st.booleans()), draw(st.sampled_from([100.0, 900.0, 4000.0])))
-            # Odd shifts keep lines from meeting in their ends, where touching is a matter of rounding.
-            shift = 7.0 * i + 3.0
-            moved = [(x + shift, y - 0.7 * shift) for x, y in (start, end)]
-            members.append(Member(f"U{i}", moved[0], moved[1], *kind))
-    crossings = []
-    for a, b in combinations(members, 2):
-        shares = met((a.start, a.end), (b.start, b.end))
-        if shares and all(0.02 < share < 0.98 for share in shares):
-            at = ((a, shares[0]), (b, shares[1]))
-            (low, x), (high, y) = at if draw(st.booleans()) else at[::-1]
-            crossings.append((low.mark, high.mark, x * low.length, y * high.length))
-    return Weave(tuple(members), tuple(crossings))
-
-
-def planks_of(member: Member) -> dict[str, float]:
-    """Return the planks of a member and how far each lies left of its line, mm."""
-    return {f"{member.mark}-L": 18.0, f"{member.mark}-R": -18.0} if member.coupled else {member.mark: 0.0}
-
-
-def graph_of(weave: Weave) -> "Graph[str]":
-    graph: Graph[str] = Graph(name="weave")
-    for member in weave.members:
-        across = np.array([member.start[1] - member.end[1], member.end[0] - member.start[0]]) / member.length
-        for plank, aside in planks_of(member).items():
-            start, end = ((*np.add(point, aside * across).tolist(), 0.0) for point in (member.start, member.end))
-            graph.add_node(
-                plank, kind="plank", mass_kg=1.0, length_mm=member.length, start=start, end=end, upright=member.upright,
-                depth_mm=member.depth, min_radius_mm=member.radius, beam=member.mark if member.coupled else "",
-            )  # fmt: skip
-    for i, (low, high, x, y) in enumerate(weave.crossings):
-        for a in planks_of(weave.of(low)):
-            for b in planks_of(weave.of(high)):
-                graph.add_edge(a, b, key=f"J{i}", kind="crossing", joint=f"J{i}", above=b, below_mm=x, above_mm=y)
-    return graph
-
-
-def radius_of(weave: Weave, mark: str) -> float:
-    """The smallest radius of a member: two equal arcs wherever it changes sides, the others lie in one level."""
-    places = sorted(
-        (x if mark == low else y, mark == high, weave.of(high if mark == low else low).depth)
-        for low, high, x, y in weave.crossings
-        if mark in (low, high)
-    )
-    own = weave.of(mark).depth
-    radii = [
-        (y - x) ** 2 / (4.0 * (one / 2.0 + own + other / 2.0))
-        for (x, over, one), (y, next_over, other) in pairwise(places)
-        if over != next_over
-    ]
-    return min(radii, default=math.inf)
-
-
-def free_beyond(weave: Weave, mark: str) -> dict[str, float]:
-    """The way to the nearest line beyond each end of a member, those that it crosses at a joint left aside."""
-    member = weave.of(mark)
-    partners = {end for low, high, _, _ in weave.crossings if mark in (low, high) for end in (low, high)}
-    free = {"start": math.inf, "end": math.inf}
-    for other in weave.members:
-        if other.mark in partners | {mark}:
-            continue
-        shares = met((member.start, member.end), (other.start, other.end))
-        if shares is None:
-            continue
-        if -1.0 / other.length <= shares[1] <= 1.0 + 1.0 / other.length:
-            if shares[0] <= 0.0:
-                free["start"] = min(free["start"], -shares[0] * member.length)
-            if shares[0] >= 1.0:
-                free["end"] = min(free["end"], (shares[0] - 1.0) * member.length)
-    return free
-
-
-def can_slide(weave: Weave, mark: str) -> bool:
-    member = weave.of(mark)
-    return (
-        not member.upright
-        and radius_of(weave, mark) >= member.radius
-        and max(free_beyond(weave, mark).values()) >= member.length
-    )
-
-
-def is_acyclic(weave: Weave, marks: set[str]) -> bool:
-    edges = [(low, high) for low, high, _, _ in weave.crossings if low in marks and high in marks]
-    return nx.is_directed_acyclic_graph(nx.DiGraph(edges))
-
-
-def ambiguous(weave: Weave) -> bool:
-    """Whether a line runs just past the end of another one, or lies along it: then rounding decides what is free."""
-    for a, b in combinations(weave.members, 2):
-        shares = met((a.start, a.end), (b.start, b.end))
-        if shares is None:
-            (x, y), (gx, gy) = np.subtract(a.end, a.start) / a.length, np.subtract(b.start, a.start)
-            if abs(gx * y - gy * x) < 5.0:
-                return True
-            continue
-        for share, member in zip(shares, (a, b), strict=True):
-            if min(abs(share), abs(share - 1.0)) * member.length < 5.0:
-                return True
-    return False
-
-
-@given(weaves())
-def test_every_unit_is_laid_once_or_left_out(weave: Weave) -> None:
-    found = interlacing(graph_of(weave))
-    laid = list(nx.topological_sort(found.precedence))
-    assert sorted([*laid, *found.left_out]) == sorted(member.mark for member in weave.members)
-    assert bool(found.left_out) == bool(found.findings)
-
-
-@given(weaves())
-def test_the_crossings_of_two_beams_at_a_joint_are_one(weave: Weave) -> None:
-    found = {
-        (at.joint, at.lower, at.upper): (at.lower_mm, at.upper_mm) for at in interlacing(graph_of(weave)).crossings
-    }
-    assert found == {(f"J{i}", low, high): (x, y) for i, (low, high, x, y) in enumerate(weave.crossings)}
-
-
-@given(weaves())
-def test_nothing_is_laid_under_what_lies_already_unless_it_is_slid_in(weave: Weave) -> None:
-    found = interlacing(graph_of(weave))
-    slid = {slide.unit for slide in found.slides}
-    lying: set[str] = set()
-    for unit in nx.topological_sort(found.precedence):
-        over = {high for low, high, _, _ in weave.crossings if low == unit and high in lying}
-        assert not over or unit in slid
-        if unit not in slid:
-            under = {low for low, high, _, _ in weave.crossings if high == unit} - set(found.left_out)
-            assert under - slid <= lying
-        lying.add(unit)
-
-
-@given(weaves())
-def test_a_slid_unit_comes_after_all_that_it_passes_and_passes_it_in_order(weave: Weave) -> None:
-    found = interlacing(graph_of(weave))
-    turns = {slide.unit: i for i, slide in enumerate(found.slides)}
-    for turn, slide in enumerate(found.slides):
-        passed = []
-        for i, (low, high, x, y) in enumerate(weave.crossings):
-            other = {low: high, high: low}.get(slide.unit)
-            if other and other not in found.left_out and turns.get(other, -1) < turn:
-                assert found.precedence.has_edge(other, slide.unit)
-                passed.append((x if slide.unit == low else y, f"J{i}"))
-        ordered = tuple(joint for _, joint in sorted(passed))
-        assert slide.crossings in (ordered, ordered[::-1])
-        assert len(ordered) < 2 or (slide.crossings == ordered) == (slide.end == "start")
-
-
-@given(weaves())
-def test_whatever_is_slid_in_bends_far_enough_and_has_its_own_length_of_free_floor(weave: Weave) -> None:
-    for slide in interlacing(graph_of(weave)).slides:
-        member = weave.of(slide.unit)
-        assert not member.upright
-        assert slide.radius == pytest.approx(radius_of(weave, slide.unit))
-        assert slide.radius >= member.radius
-        assert slide.free >= member.length
-        if not ambiguous(weave):
-            free = free_beyond(weave, slide.unit)
-            # Free ways are given to a thousandth of a millimetre.
-            assert slide.free == pytest.approx(free[slide.end], abs=2e-3)
-            assert slide.free >= max(free.values()) - 1.01
-
-
-@given(weaves())
-def test_no_slide_is_needless(weave: Weave) -> None:
-    found = interlacing(graph_of(weave))
-    laid = {member.mark for member in weave.members} - set(found.left_out) - {slide.unit for slide in found.slides}
-    assert is_acyclic(weave, laid)
-    for slide in found.slides:
-        assert not is_acyclic(weave, laid | {slide.unit})
-
-
-@given(weaves(most=6))
-def test_no_choice_of_slides_resolves_what_is_called_impossible(weave: Weave) -> None:
-    """Brute force: all subsets of the units that can be slid in; what is left out stays in a circle under each."""
-    found = interlacing(graph_of(weave))
-    if ambiguous(weave):
-        return
-    able = [member.mark for member in weave.members if can_slide(weave, member.mark)]
-    marks = {member.mark for member in weave.members}
-    ways = [set(out) for count in range(len(able) + 1) for out in combinations(able, count)]
-    resolved = [out for out in ways if is_acyclic(weave, marks - out)]
-    assert bool(resolved) == (not found.findings)
-    for finding in found.findings:
-        circle = set(finding.mark.split(", "))
-        assert circle <= set(found.left_out)
-        assert not any(is_acyclic(weave, circle - out) for out in ways)
-
-
-@given(weaves())
-def test_the_same_weave_gives_the_same_order_however_its_graph_was_built(weave: Weave) -> None:
-    graph = graph_of(weave)
-    other: Graph[str] = Graph(name="weave")
-    other.add_nodes_from(reversed(list(graph.nodes(data=True))))
-    for a, b, key, edge in reversed(list(graph.edges(keys=True, data=True))):
-        other.add_edge(b, a, key=key, **edge)
-    one, two = interlacing(graph), interlacing(other)
-    assert (one.crossings, one.slides, one.findings) == (two.crossings, two.slides, two.findings)
-    assert list(one.precedence.edges(data=True)) == list(two.precedence.edges(data=True))
-
-
-@given(weaves(), st.data())
-def test_units_of_different_layers_need_no_slides(weave: Weave, data: st.DataObject) -> None:
-    graph = graph_of(weave)
-    layers = {member.mark: data.draw(st.integers(-9, 9)) + 20 * i for i, member in enumerate(weave.members)}
-    for mark, node in graph.nodes(data=True):
-        node["layer"] = layers[node["beam"] or mark]
-    for _, _, edge in graph.edges(data=True):
-        del edge["above"], edge["below_mm"], edge["above_mm"]
-    found = interlacing(graph)
-    assert not found.slides
-    assert not found.findings
-    assert all(layers[at.lower] < layers[at.upper] for at in found.crossings)
-    assert len(found.crossings) == len(weave.crossings)
 
 
 def test_what_is_said_of_a_crossing_counts_more_than_the_layers() -> None:
@@ -302,19 +26,6 @@ def test_what_is_said_of_a_crossing_counts_more_than_the_layers() -> None:
     assert list(found.precedence.edges) == [("B", "A")]
     # Stations that the graph does not give are those where the lines cross.
     assert (found.crossings[0].lower_mm, found.crossings[0].upper_mm) == pytest.approx((900.0, 900.0))
-
-
-def flat(mark: str, start: Point, end: Point, radius: float = 1700.0) -> Member:
-    return Member(mark, start, end, upright=False, coupled=False, radius=radius)
-
-
-def square(radius: float, *strays: Member) -> Weave:
-    """Four planks round a square of 1 m, each over the next, all of them 1.4 m long."""
-    lines = [((-200.0, 0.0), (1200.0, 0.0)), ((1000.0, -200.0), (1000.0, 1200.0))]
-    lines += [((1200.0, 1000.0), (-200.0, 1000.0)), ((0.0, 1200.0), (0.0, -200.0))]
-    members = [flat(f"Q{i + 1}", start, end, radius) for i, (start, end) in enumerate(lines)]
-    crossings = [(f"Q{(i + 1) % 4 + 1}", f"Q{i + 1}", 200.0, 1200.0) for i in range(4)]
-    return Weave((*members, *strays), tuple(crossings))
 
 
 def test_one_plank_of_four_round_a_square_is_slid_in() -> None:
@@ -332,18 +43,6 @@ def test_too_stiff_a_square_is_a_finding_with_its_radius() -> None:
     assert (finding.code, finding.severity, finding.mark) == ("AAG951", "error", "Q1, Q2, Q3, Q4")
     for name in ("J0", "J1", "J2", "J3", "10417 mm", "12000 mm"):
         assert name in finding.text
-
-
-def walls(gap: float) -> list[Member]:
-    """Two long planks on each side of the square, the gap beyond the ends of its planks."""
-    low, high = -200.0 - gap, 1200.0 + gap
-    lines = [
-        ((low, -3e3), (low, 4e3)),
-        ((high, -3e3), (high, 4e3)),
-        ((-3e3, low), (4e3, low)),
-        ((-3e3, high), (4e3, high)),
-    ]
-    return [flat(f"W{i}", start, end) for i, (start, end) in enumerate(lines)]
 
 
 def test_a_plank_needs_its_own_length_of_free_floor() -> None:

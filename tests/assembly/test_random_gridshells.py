@@ -10,6 +10,7 @@ from aag_cad.parts.model import all_parts
 from aag_cad.pipeline import gridshell_of
 from assembly.check import check_plan
 from assembly.disassembly_check import check_disassembly
+from assembly.plan import plan_of
 from assembly.planned import planned_of
 from assembly.schedule import people_curve
 from assembly.segment_search import Limits
@@ -17,9 +18,9 @@ from assembly.segment_search import Limits
 TEXT, _ = design_text("vault")
 
 
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(
-    geodesics=st.sampled_from([6, 8, 10]),
+    geodesics=st.sampled_from([6, 8]),
     sector=st.integers(45, 60),
     offset=st.sampled_from([0.3, 0.5, 0.7]),
     people=st.integers(2, 7),
@@ -36,7 +37,7 @@ def test_each_part_comes_once_in_an_order_that_can_be_built(
     gridshell = gridshell_of(design)
     limits = Limits(12000.0, width, 2600.0, 3000.0)
     planned = planned_of(gridshell, design.crew, limits, edges_first=edges_first)
-    assert check_plan(planned.plan, gridshell) == []
+    assert check_plan(planned.plan, gridshell, planned.segmentation, planned.locking) == []
     assert check_disassembly(planned.down, gridshell) == []
     for plan in (planned.plan, planned.down):
         counted = Counter(mark for step in plan.steps for mark in step.marks)
@@ -45,4 +46,5 @@ def test_each_part_comes_once_in_an_order_that_can_be_built(
     for schedule in (planned.schedule, planned.down_schedule):
         assert max(people_at for _, people_at in people_curve(schedule)) <= people
         assert schedule.makespan >= schedule.lower_bound
-    assert planned == planned_of(gridshell, design.crew, limits, edges_first=edges_first)
+    again = plan_of(gridshell, people, 25.0, locking=planned.locking, segmentation=planned.segmentation)
+    assert again.steps == planned.plan.steps

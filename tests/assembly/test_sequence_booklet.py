@@ -1,4 +1,4 @@
-"""The booklet: one card a step, read back with pypdf."""
+"""The booklets of putting together and taking down: one card a step, read back with pypdf."""
 
 import re
 from dataclasses import replace
@@ -12,32 +12,39 @@ from pypdf import PdfReader
 from aag_cad.errors import FileError
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Part, all_parts
+from assembly.booklet import common_of, disassembly_booklet, sequence_booklet
 from assembly.cards import part_rows, step_card, step_table, totals
 from assembly.plan import piece_weights, plan_of
-from assembly.printout import sequence_pdf, write_sequence
+from assembly.planned import Planned
+from assembly.printout import booklet_pdf, sequence_pdf, write_sequence
 from assembly.steps import Plan, Step
 
-FIRST_PAGES = 3
+# Cover, how a shell is made, map of marks, map of blocks, list of steps, laying plan, its coordinates, schedule.
+FIRST_PAGES = 8
+ACROSS = (3, 5, 7)
+# Cover, how to read the cards, list of steps, schedule.
+FIRST_PAGES_DOWN = 4
 
 
 @pytest.fixture(scope="module")
-def plan(gridshell: Gridshell) -> Plan:
-    return plan_of(gridshell, 4, 25.0)
+def plan(planned: Planned) -> Plan:
+    return planned.plan
+
+
+def text_of(pdf: bytes) -> list[str]:
+    return [" ".join(page.extract_text().split()) for page in PdfReader(BytesIO(pdf)).pages]
 
 
 @pytest.fixture(scope="module")
-def pages(plan: Plan, gridshell: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+def pages(planned: Planned, gridshell: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     path = tmp_path_factory.mktemp("booklet") / "sequence.pdf"
-    write_sequence(plan, gridshell, path)
-    found = list(PdfReader(path).pages)
-    assert len(found) == FIRST_PAGES + len(plan.steps)
-    read = [*range(FIRST_PAGES), *(FIRST_PAGES + step.number - 1 for step in shown(plan))]
-    return [" ".join(found[i].extract_text().split()) for i in read]
+    write_sequence(planned, gridshell, path)
+    return text_of(path.read_bytes())
 
 
-def shown(plan: Plan) -> list[Step]:
-    """The steps whose cards are read: those of the first shell, which the others repeat, and those on site."""
-    return [step for step in plan.steps if step.shell in ("S1", "")]
+@pytest.fixture(scope="module")
+def down_pages(planned: Planned, gridshell: Gridshell) -> list[str]:
+    return text_of(booklet_pdf(disassembly_booklet(planned, common_of(gridshell, "en"))))
 
 
 @pytest.fixture(scope="module")
@@ -45,22 +52,74 @@ def one_shell(gridshell: Gridshell) -> Gridshell:
     return replace(gridshell, shells=gridshell.shells[:1], blades=(), bolts=(), joints=())
 
 
+@pytest.fixture(scope="module")
+def alone(planned: Planned, one_shell: Gridshell) -> Planned:
+    """The plan of one shell of the vault, on its own."""
+    locking, segments = planned.locking[:1], planned.segmentation.segments[:1]
+    steps = tuple(step for step in planned.down.steps if step.shell == "S1")
+    return replace(
+        planned,
+        plan=plan_of(one_shell, 4, 25.0, locking=locking),
+        locking=locking,
+        segmentation=replace(planned.segmentation, segments=segments),
+        down=replace(planned.down, steps=steps),
+    )
+
+
+def says_all(step: Step, titles: dict[str, str], page: str) -> bool:
+    """Whether a page has the title, the tools, what comes before, the instructions and the hold point of a step."""
+    # A line may end after a hyphen.
+    squeezed = page.replace(" ", "")
+    words = (*step.tools, *(titles[before] for before in step.predecessors))
+    # Line ends and ligatures may fall into a sentence; its first words tell that it is there.
+    told = all(" ".join(line.split()[:2]) in page for line in step.instructions)
+    return (
+        page.startswith(f"{step.number} {step.title}")
+        and all(word.replace(" ", "") in squeezed for word in words)
+        and told
+        and ("HOLD" in page) == bool(step.hold)
+    )
+
+
 def test_each_card_says_what_to_do_with_what_and_after_what(plan: Plan, pages: list[str]) -> None:
     titles = {step.id: step.title for step in plan.steps}
-    for step, page in zip(shown(plan), pages[FIRST_PAGES:], strict=True):
-        assert page.startswith(f"{step.number} {step.title}")
-        # A line may end after a hyphen.
-        squeezed = page.replace(" ", "")
-        for words in (*step.tools, *(titles[before] for before in step.predecessors)):
-            assert words.replace(" ", "") in squeezed
-        assert ("HOLD" in page) == bool(step.hold)
-        # Line ends and ligatures may fall into a sentence; its first words tell that it is there.
-        assert all(" ".join(line.split()[:2]) in page for line in step.instructions)
+    cards = pages[FIRST_PAGES : FIRST_PAGES + len(plan.steps)]
+    silent = [s.number for s, page in zip(plan.steps, cards, strict=True) if not says_all(s, titles, page)]
+    assert silent == []
+
+
+def test_the_cards_of_taking_down_follow_their_plan_to_the_passports(planned: Planned, down_pages: list[str]) -> None:
+    plan = planned.down
+    titles = {step.id: step.title for step in plan.steps}
+    assert len(down_pages) == FIRST_PAGES_DOWN + len(plan.steps)
+    cards = down_pages[FIRST_PAGES_DOWN:]
+    assert [s.number for s, page in zip(plan.steps, cards, strict=True) if not says_all(s, titles, page)] == []
+    assert plan.steps[-1].phase == "passports"
+    assert "passport" in down_pages[-1]
 
 
 def test_the_list_of_steps_names_every_step(plan: Plan, pages: list[str]) -> None:
     listing = " ".join(pages[:FIRST_PAGES])
     assert all(f"{step.number} {step.title}" in listing for step in plan.steps)
+
+
+def test_locking_and_segments_close_the_booklet(planned: Planned, pages: list[str]) -> None:
+    """The three shells are alike: one locking page for all, and a sheet for each with its own centre of gravity."""
+    last = pages[FIRST_PAGES + len(planned.plan.steps) :]
+    assert last[0].startswith("Locking: shell S1, S2, S3")
+    assert len(last) == 1 + len(planned.segmentation.segments)
+    for segment, page in zip(planned.segmentation.segments, last[1:], strict=True):
+        assert segment.name in page
+        assert f"{segment.mass:.0f} kg" in page
+
+
+def test_the_coordinates_of_the_laying_plan_name_every_beam_geodesic_and_stud(
+    gridshell: Gridshell, pages: list[str]
+) -> None:
+    shell = gridshell.shells[0]
+    page = pages[6]
+    units = [*shell.beams, *(plank for plank in shell.planks if plank.family == "G"), *shell.studs]
+    assert [unit.mark for unit in units if unit.mark.removeprefix("S1-") not in page] == []
 
 
 def test_the_cover_counts_the_parts_of_the_vault(pages: list[str], gridshell: Gridshell) -> None:
@@ -70,27 +129,34 @@ def test_the_cover_counts_the_parts_of_the_vault(pages: list[str], gridshell: Gr
     assert gridshell.title in pages[0]
 
 
-def test_pages_are_a4_one_a_step_for_a_single_shell_too(one_shell: Gridshell) -> None:
-    plan = plan_of(one_shell, 4, 25.0)
-    reader = PdfReader(BytesIO(sequence_pdf(plan, one_shell)))
-    assert len(reader.pages) == FIRST_PAGES + len(plan.steps)
-    feet = next(step for step in plan.steps if step.phase == "feet")
-    words = " ".join(reader.pages[FIRST_PAGES + feet.number - 1].extract_text().split())
-    assert "Set out the feet of the vault" in words
-    for page in reader.pages:
+def test_pages_are_a4_one_a_step_for_a_single_shell_too(alone: Planned, one_shell: Gridshell) -> None:
+    reader = PdfReader(BytesIO(sequence_pdf(alone, one_shell)))
+    assert len(reader.pages) == FIRST_PAGES + len(alone.plan.steps) + 2
+    feet = next(step for step in alone.plan.steps if step.phase == "feet")
+    assert feet.title in " ".join(reader.pages[FIRST_PAGES + feet.number - 1].extract_text().split())
+    for i, page in enumerate(reader.pages):
+        size = sorted((float(page.mediabox.width), float(page.mediabox.height)), reverse=i in ACROSS)
         # 210 x 297 mm in points, to the rounding of the writer.
-        assert float(page.mediabox.width) == pytest.approx(595.28, abs=0.01)
-        assert float(page.mediabox.height) == pytest.approx(841.89, abs=0.01)
+        assert size == pytest.approx([841.89, 595.28] if i in ACROSS else [595.28, 841.89], abs=0.01)
+        assert (float(page.mediabox.width) > float(page.mediabox.height)) == (i in ACROSS)
 
 
-def test_the_same_plan_gives_the_same_bytes_without_a_date(one_shell: Gridshell) -> None:
-    plan = plan_of(one_shell, 4, 25.0)
-    pdf = sequence_pdf(plan, one_shell)
-    assert pdf == sequence_pdf(plan, one_shell)
+def test_the_same_plan_gives_the_same_bytes_without_a_date(alone: Planned, one_shell: Gridshell) -> None:
+    common = common_of(one_shell, "en")
+    pdf = booklet_pdf(sequence_booklet(alone, common))
+    assert pdf == booklet_pdf(sequence_booklet(alone, common_of(one_shell, "en")))
     metadata = PdfReader(BytesIO(pdf)).metadata
     assert metadata is not None
     assert metadata.creation_date is None
     assert not re.search(rb"(CreationDate|ModDate|CreateDate)", pdf)
+
+
+def test_shells_alike_share_their_pictures(planned: Planned, gridshell: Gridshell) -> None:
+    """What is drawn for S1 serves for S2 and S3: on the cards of a shell marks stand without its number."""
+    cards = sequence_booklet(planned, common_of(gridshell, "en")).data["cards"]
+    drawn = {shell: [card["pictures"] for card in cards if card["shell"] == shell] for shell in ("S1", "S2", "S3")}
+    assert drawn["S1"] == drawn["S2"] == drawn["S3"]
+    assert len({card["key"] for card in cards if card["shell"]}) == 3
 
 
 def test_fasteners_are_counted_by_size_with_their_joints(plan: Plan, gridshell: Gridshell) -> None:
@@ -98,7 +164,7 @@ def test_fasteners_are_counted_by_size_with_their_joints(plan: Plan, gridshell: 
     marks = tuple(f"S1-N-{i:03d}-B{j}" for i in (1, 2, 3) for j in (1, 2, 3, 4))
     bolt = gridshell.shells[0].bolts[0]
     assert part_rows(parts, marks) == [
-        ["12", f"Bolt M{bolt.diameter:g} x {bolt.length:g}", "at N-001 to N-003, 4 each"]
+        ["12", f"Bolt M{bolt.diameter:g} x {bolt.length:g}", "at N-001 … N-003, 4 each"]
     ]
 
 
@@ -112,16 +178,16 @@ def test_steel_and_concrete_are_listed_by_make_with_their_marks(plan: Plan, grid
         return {name: (count, where) for count, name, where in part_rows(parts, marks)}
 
     feet = rows("site.feet", "S1")
-    assert feet["Concrete block 400 x 380 x 300"] == ("14", "C-01 to C-14")
-    assert feet["Shoe 90 x 6"] == ("14", "F-01 to F-14")
+    assert feet["Concrete block 400 x 380 x 300"] == ("14", "C-01 … C-14")
+    assert feet["Shoe 90 x 6"] == ("14", "F-01 … F-14")
     (rod,) = (row for name, row in feet.items() if name.startswith("Threaded rod M16"))
-    assert rod == ("14", "at C-01 to C-14")
-    assert rows("site.stand.S1", "S1")["Bolt M8 x 40"] == ("56", "at F-01 to F-14, 4 each")
-    assert rows("S1.edge.upper", "S1")["Strap 50 x 3"] == ("15", "R-01 to R-15")
+    assert rod == ("14", "at C-01 … C-14")
+    assert rows("site.stand.S1", "S1")["Bolt M8 x 40"] == ("56", "at F-01 … F-14, 4 each")
+    assert rows("S1.edge.upper", "S1")["Strap 50 x 3"] == ("15", "R-01 … R-15")
     ridge = rows("site.ridge.S1.S2", "R12")
     assert ridge == {
-        "Ridge blade 100 x 5": ("7", "R12-01 to R12-07"),
-        "Bolt M8 x 40": ("28", "at R12-01 to R12-07, 4 each"),
+        "Ridge blade 100 x 5": ("7", "R12-01 … R12-07"),
+        "Bolt M8 x 40": ("28", "at R12-01 … R12-07, 4 each"),
     }
 
 
@@ -131,9 +197,9 @@ def test_the_cover_is_listed_by_make_whatever_the_lengths(plan: Plan, gridshell:
     step = next(step for step in plan.steps if step.id == "site.cover.S1")
     card = step_card(gridshell, plan, step, parts, piece_weights(gridshell))
     rows = {name: (count, where) for count, name, where in card["parts"]}
-    assert rows["Strip 10 thick"] == ("13", "P-01 to P-13")
-    assert rows["Mullion 50 x 3"] == ("14", "M-01 to M-14")
-    assert rows["Clamping bar 50 x 2"] == ("14", "D-01 to D-14")
+    assert rows["Strip 10 thick"] == ("13", "P-01 … P-13")
+    assert rows["Mullion 50 x 3"] == ("14", "M-01 … M-14")
+    assert rows["Clamping bar 50 x 2"] == ("14", "D-01 … D-14")
     joints = [joint.mark for joint in gridshell.shells[0].joints if joint.kind == "cover"]
     outside = [count for name, (count, _) in rows.items() if name.startswith("Screw") and name.endswith("outside")]
     assert outside == [str(len(joints))]
@@ -170,11 +236,13 @@ def test_the_totals_count_each_part_once(gridshell: Gridshell) -> None:
     assert int(whole[2]) == len(all_parts(gridshell))
 
 
-def test_a_folder_in_the_way_is_an_error_and_nothing_is_left_behind(one_shell: Gridshell, tmp_path: Path) -> None:
+def test_a_folder_in_the_way_is_an_error_and_nothing_is_left_behind(
+    alone: Planned, one_shell: Gridshell, tmp_path: Path
+) -> None:
     target = tmp_path / "sequence.pdf"
     target.mkdir()
     (target / "kept.txt").write_text("kept", encoding="utf-8")
     with pytest.raises(FileError, match=r"sequence\.pdf"):
-        write_sequence(plan_of(one_shell, 4, 25.0), one_shell, target)
+        write_sequence(alone, one_shell, target)
     assert [path.name for path in tmp_path.iterdir()] == ["sequence.pdf"]
     assert (target / "kept.txt").read_text(encoding="utf-8") == "kept"

@@ -1,0 +1,113 @@
+"""How a shell that is cut for the journey is made with its splices, and parted when it is stiff.
+
+It is put together whole in the workshop, because only whole it takes its shape. Every part is added there once; what the
+parting takes out and the joining puts in again are ``extras`` of these steps, and so is the bracing.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.model import Shell
+from assembly.graph import joint_of
+from assembly.language import Language, say
+from assembly.process import EVERYONE, Work
+from assembly.ranges import joined_ranges, short_mark
+from assembly.seams import Seam, seams, segments_of
+from assembly.segment_sheet import brace_words
+from assembly.segments import Segment, Segmentation
+from assembly.splices import Splice
+
+_KINDS = {"W": "screw", "B": "bolt", "K": "block", "R": "strap", "N": "stud"}
+
+
+def _fasteners(language: Language, marks: Sequence[str]) -> str:
+    """Return how many fasteners of each kind there are, in words."""
+    kinds = Counter(_KINDS.get(parse_mark(mark).part[:1] or parse_mark(mark).family, "bolt") for mark in marks)
+    counted = ((kind if count == 1 else f"{kind}s", count) for kind, count in sorted(kinds.items()))
+    return ", ".join(say(language, f"site.count.{kind}", count=count) for kind, count in counted)
+
+
+def seam_extras(language: Language, seam: Seam, chapter: str) -> Iterator[str]:
+    """Yield what is taken out at a seam (``divide``) or put in again (``splice``): splices with bolts, fasteners."""
+    for splice in seam.splices:
+        side = "inside" if parse_mark(splice.member).family == "A1" else "outside"
+        yield say(
+            language,
+            f"site.{chapter}.{splice.kind}",
+            line=short_mark(splice.line),
+            beam=short_mark(splice.member),
+            joint=short_mark(splice.joint) if splice.joint else "",
+            bolts=splice.bolts,
+            diameter=splice.diameter,
+            length=splice.length,
+            side=say(language, f"site.{chapter}.{side}"),
+        )
+    if seam.fasteners:
+        joints = joined_ranges(tuple(dict.fromkeys(map(joint_of, seam.fasteners))))
+        told = _fasteners(language, seam.fasteners)
+        yield say(language, f"site.{chapter}.fasteners", line=short_mark(seam.line), fasteners=told, joints=joints)
+    yield say(language, f"site.{chapter}.lash", line=short_mark(seam.line), keeper=seam.keeper)
+
+
+def brace_extras(language: Language, segment: Segment, chapter: str) -> Iterator[str]:
+    """Yield the bracing of a segment that is put on (``divide``) or taken off (``splice``)."""
+    for brace in segment.braces:
+        yield say(language, f"site.{chapter}.brace", segment=segment.name, brace=brace_words(brace, language))
+
+
+def _made(language: Language, splice: Splice) -> str:
+    stations = [cut.station for cut in splice.cuts]
+    return say(
+        language,
+        f"site.made.{splice.kind}",
+        beam=short_mark(splice.member),
+        line=short_mark(splice.line),
+        joint=short_mark(splice.joint) if splice.joint else "",
+        left=stations[0],
+        right=stations[-1],
+        length=splice.length,
+        bolts=splice.bolts,
+        diameter=splice.diameter,
+    )
+
+
+def made_with_splices(
+    works: Iterable[Work], segmentation: Segmentation | None, language: Language = "en"
+) -> Iterator[Work]:
+    """Yield works in which beams and edge planks that are cut for the journey are made with their splices.
+
+    The works that add their planks get an extra for each splice: where the planks are parted, block or plate, bolts.
+    """
+    splices = segmentation.splices if segmentation else ()
+    for work in works:
+        added = set(work.marks)
+        cut = [splice for splice in splices if any(cut.plank in added for cut in splice.cuts)]
+        yield replace(work, extras=(*work.extras, *(_made(language, splice) for splice in cut))) if cut else work
+
+
+def divide_works(shell: Shell, segmentation: Segmentation | None = None, language: Language = "en") -> tuple[Work, ...]:
+    """Return the work that parts a stiff shell into its segments for the journey; none if it travels whole.
+
+    Extras: the bracing of each segment, and what comes out of the splices and joints along each cut. Props: those that
+    each segment bears on when it is parted.
+    """
+    own, cuts = segments_of(segmentation, shell.mark), seams(shell, segmentation)
+    if not own:
+        return ()
+    lines = ", ".join(dict.fromkeys(short_mark(seam.line) for seam in cuts))
+    braces = (extra for segment in own for extra in brace_extras(language, segment, "divide"))
+    names = ", ".join(segment.name for segment in own)
+    work = Work(
+        f"{shell.mark}.divide",
+        "divide",
+        say(language, "site.divide.title", shell=shell.mark, segments=names),
+        after=(f"{shell.mark}.tighten",),
+        assemblies=(shell.mark,),
+        least_crew=EVERYONE,
+        props=tuple(dict.fromkeys(mark for segment in own for mark in segment.props)),
+        extras=(*braces, *(extra for seam in cuts for extra in seam_extras(language, seam, "divide"))),
+        notes=(say(language, "site.divide.order", lines=lines),),
+    )
+    return (work,)

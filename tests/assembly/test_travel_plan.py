@@ -1,0 +1,270 @@
+"""A plan for shells that are cut for the journey: parted once, standing beside each other on props, joined again."""
+
+import re
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from aag_cad.design import Design, load_design
+from aag_cad.parts.model import Gridshell, all_parts
+from aag_cad.pipeline import gridshell_of
+from assembly.check import check_plan
+from assembly.durations import step_minutes
+from assembly.lifting import margin_inside
+from assembly.locking import LockingOrder, locking_orders
+from assembly.parting import divide_works
+from assembly.plan import plan_of
+from assembly.schedule import schedule_of
+from assembly.seams import seams, standing_order
+from assembly.segment_search import Limits
+from assembly.segments import Segmentation, segments
+from assembly.site import site_works
+from assembly.steps import Plan, Step
+
+LORRY = Limits(12000.0, 2400.0, 2600.0, 3000.0)
+NARROW = Limits(12000.0, 2400.0, 2400.0, 3000.0)
+
+
+@pytest.fixture(scope="module")
+def pair(gridshell: Gridshell) -> Gridshell:
+    """Two shells of the vault that meet along a ridge."""
+    return replace(gridshell, shells=gridshell.shells[:2], blades=(), bolts=(), joints=())
+
+
+@pytest.fixture(scope="module")
+def cut(pair: Gridshell) -> Segmentation:
+    return segments(pair, LORRY)
+
+
+@pytest.fixture(scope="module")
+def locking(pair: Gridshell) -> tuple[LockingOrder, ...]:
+    return locking_orders(pair)
+
+
+@pytest.fixture(scope="module")
+def plan(pair: Gridshell, cut: Segmentation, locking: tuple[LockingOrder, ...]) -> Plan:
+    return plan_of(pair, 4, 25.0, locking=locking, segmentation=cut)
+
+
+def step(plan: Plan, step_id: str) -> Step:
+    return next(step for step in plan.steps if step.id == step_id)
+
+
+def test_a_plan_with_cut_shells_has_no_fault(
+    plan: Plan, pair: Gridshell, cut: Segmentation, locking: tuple[LockingOrder, ...]
+) -> None:
+    assert check_plan(plan, pair, cut, locking) == []
+
+
+def test_what_is_opened_for_the_journey_is_not_added_twice(plan: Plan, pair: Gridshell) -> None:
+    placed = Counter(mark for step in plan.steps for mark in step.marks)
+    assert placed == Counter(part.mark for part in all_parts(pair))
+    assert all(not step.marks for step in plan.steps if step.phase in ("divide", "splice"))
+
+
+def test_the_middle_of_a_shell_stands_first_and_each_next_segment_is_joined_at_once(plan: Plan) -> None:
+    own = [step.id for step in plan.steps if step.phase in ("stand", "splice") and "S1" in step.assemblies]
+    assert own == [
+        "site.stand.S1.2", "site.stand.S1.3", "site.splice.S1.3.S1.2", "site.stand.S1.1", "site.splice.S1.1.S1.2",
+    ]  # fmt: skip
+
+
+def test_of_four_segments_the_higher_inner_one_stands_first(pair: Gridshell) -> None:
+    plan = segments(replace(pair, shells=pair.shells[:1]), NARROW)
+    order = [segment.name for segment, _ in standing_order(pair.shells[0], plan)]
+    assert order == ["S1.2", "S1.3", "S1.1", "S1.4"]
+
+
+def test_the_last_segment_of_a_closed_ring_is_joined_on_both_sides() -> None:
+    column = gridshell_of(load_design("column"))
+    plan = segments(column, Limits(50000.0, 50000.0, 50000.0, 400.0))
+    assert len(seams(column.shells[0], plan)) == len(plan.segments) == 2
+    beside = [len(joined) for _, joined in standing_order(column.shells[0], plan)]
+    assert beside == [0, 2]
+    works = {work.id: work for work in site_works(column, plan)}
+    assert any("closes the ring" in note for note in works["site.stand.S1.2"].notes)
+
+
+def test_every_splice_is_made_once_taken_out_once_and_put_in_once(plan: Plan, cut: Segmentation) -> None:
+    for splice in (splice for splice in cut.splices if splice.kind == "block"):
+        shell, beam, joint = splice.member[:2], splice.member[3:], splice.joint[3:]
+        own = [s for s in plan.steps if shell in (s.shell, *s.assemblies)]
+        told = Counter(
+            s.phase for s in own for extra in s.extras if re.search(rf"\b{beam}\b", extra) and f" {joint} " in extra
+        )
+        assert told == {"prefabricate": 1, "divide": 1, "splice": 1}
+        (made,) = (s for s in own if s.phase == "prefabricate" and splice.cuts[0].plank in s.marks)
+        assert any(f"{beam} is cut along {splice.line[3:]}" in extra for extra in made.extras)
+
+
+def test_bracing_goes_on_before_the_journey_and_comes_off_when_a_segment_is_joined(
+    plan: Plan, cut: Segmentation
+) -> None:
+    for shell in ("S1", "S2"):
+        on = [x.removeprefix("put on ") for x in step(plan, f"{shell}.divide").extras if x.startswith("put on ")]
+        joins = [s for s in plan.steps if s.phase == "splice" and shell in s.assemblies]
+        off = [x.removeprefix("take off ") for s in joins for x in s.extras if x.startswith("take off ")]
+        assert Counter(on) == Counter(off)
+        assert len(on) == sum(len(segment.braces) for segment in cut.segments if segment.shell == shell)
+        middle = [x for x in joins[0].extras if x.startswith(f"take off {shell}.2")]
+        assert not middle
+
+
+def test_fasteners_of_no_segment_belong_to_one_seam(pair: Gridshell, cut: Segmentation) -> None:
+    found = Counter(mark for shell in pair.shells for seam in seams(shell, cut) for mark in seam.fasteners)
+    assert found == Counter(cut.site)
+
+
+def test_each_segment_gets_the_bolts_of_its_own_shoes(plan: Plan, pair: Gridshell, cut: Segmentation) -> None:
+    joints = {joint.mark: joint for joint in pair.shells[0].joints}
+    for segment in (segment for segment in cut.segments if segment.shell == "S1"):
+        for mark in step(plan, f"site.stand.{segment.name}").marks:
+            assert set(joints[mark.rpartition("-")[0]].members) & set(segment.geodesics)
+
+
+def test_props_hold_every_segment_and_stay_until_the_last_ridge(plan: Plan, locking: tuple[LockingOrder, ...]) -> None:
+    stands = [s for s in plan.steps if s.phase == "stand"]
+    assert all(len(s.props) >= 2 for s in stands)
+    crown = {prop.joint for order in locking for prop in order.released.props}
+    assert crown
+    assert crown <= {joint for s in stands for joint in s.props}
+    last = [s for s in plan.steps if s.phase == "ridges"][-1]
+    assert crown <= set(last.props)
+    assert all(joint in " ".join(last.extras) for s in stands for joint in s.props)
+
+
+def test_a_whole_shell_stands_on_the_prop_of_its_locking_order(
+    pair: Gridshell, locking: tuple[LockingOrder, ...]
+) -> None:
+    whole = plan_of(pair, 4, 25.0, locking=locking)
+    assert check_plan(whole, pair, None, locking) == []
+    for order in locking:
+        assert step(whole, f"site.stand.{order.shell}").props == tuple(prop.joint for prop in order.released.props)
+    assert divide_works(pair.shells[0]) == ()
+
+
+def test_both_languages_plan_the_same_and_the_crew_has_a_schedule(
+    design: Design, plan: Plan, pair: Gridshell, cut: Segmentation, locking: tuple[LockingOrder, ...]
+) -> None:
+    german = plan_of(pair, 4, 25.0, locking=locking, segmentation=cut, language="de")
+    for ours, theirs in zip(plan.steps, german.steps, strict=True):
+        assert (ours.id, ours.marks, ours.props, ours.predecessors) == (
+            theirs.id, theirs.marks, theirs.props, theirs.predecessors,
+        )  # fmt: skip
+        assert len(ours.extras) == len(theirs.extras)
+        assert not set(ours.extras) & set(theirs.extras)
+    schedule = schedule_of(german, step_minutes(german, pair, design.crew.minutes), 4, 8)
+    assert len(schedule.steps) == len(german.steps)
+
+
+def test_the_margin_inside_a_square_is_the_distance_to_its_nearest_side() -> None:
+    square = np.array([(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)])
+    assert margin_inside(square, np.array([1.0, 2.0])) == pytest.approx(1.0)
+    assert margin_inside(square, np.array([5.0, 2.0])) == pytest.approx(-1.0)
+    assert margin_inside(square[:2], np.array([1.0, 0.0])) == -np.inf
+
+
+def _without(plan: Plan, step_id: str) -> Plan:
+    return replace(plan, steps=tuple(step for step in plan.steps if step.id != step_id))
+
+
+def _changed(plan: Plan, step_id: str, **changes: object) -> Plan:
+    steps = (replace(step, **changes) if step.id == step_id else step for step in plan.steps)  # type: ignore[arg-type]
+    return replace(plan, steps=tuple(steps))
+
+
+def _moved(plan: Plan, mark: str, step_id: str) -> Plan:
+    steps = (replace(step, marks=tuple(other for other in step.marks if other != mark)) for step in plan.steps)
+    steps = (replace(step, marks=(*step.marks, mark)) if step.id == step_id else step for step in steps)
+    return replace(plan, steps=tuple(steps))
+
+
+FAULTS: list[tuple[Callable[[Plan], Plan], str]] = [
+    (lambda p: _without(p, "S1.divide"), "S1: expected one divide step"),
+    (lambda p: _changed(p, "S1.divide", extras=()), "S1: expected one divide step with hold point, props and what"),
+    (lambda p: _changed(p, "S1.divide", props=()), "S1: expected one divide step with hold point, props and what"),
+    (lambda p: _changed(p, "S1.divide", predecessors=()), "is part of the stiff shell, but nothing forces"),
+    (lambda p: _without(p, "site.stand.S1.2"), "S1.2: expected one stand step"),
+    (lambda p: _changed(p, "site.stand.S1.2", hold=""), "S1.2: expected one stand step with a hold point"),
+    (lambda p: _changed(p, "site.stand.S1.2", id="site.stand.S1"), "stands what is no segment of it"),
+    (
+        lambda p: _changed(p, "site.stand.S1.2", predecessors=("site.feet", "S1.tighten")),
+        "S1.2: stands in step site.stand.S1.2, but nothing forces the parting of S1",
+    ),
+    (lambda p: _changed(p, "site.stand.S1.1", props=()), "S1.1: step site.stand.S1.1 names 0 props"),
+    (lambda p: _changed(p, "site.stand.S1.1", props=("S2-N-082", "S2-N-064")), "names 2 props of S1, expected"),
+    # Studs at its foot hold nothing: the centre of gravity lies further in.
+    (
+        lambda p: _changed(p, "site.stand.S1.1", props=("S1-N-001", "S1-N-007")),
+        "S1.1: its centre of gravity is outside",
+    ),
+    (
+        lambda p: _changed(p, "site.stand.S1.3", predecessors=("site.feet", "S1.divide")),
+        "S1.3: nothing forces a segment beside it to stand",
+    ),
+    (lambda p: _without(p, "site.splice.S1.3.S1.2"), "S1.2, S1.3: expected one splice step"),
+    (lambda p: _changed(p, "site.splice.S1.3.S1.2", extras=()), "S1.2, S1.3: expected one splice step"),
+    (
+        lambda p: _changed(p, "site.splice.S1.1.S1.2", predecessors=("site.stand.S1.2",)),
+        "S1.1: joined in step site.splice.S1.1.S1.2, but nothing forces its standing",
+    ),
+    (lambda p: _moved(p, "S1-F-01-B1", "site.stand.S1.2"), "S1-F-01-B1 bolts a shoe of S1.1"),
+    (
+        lambda p: _changed(p, "site.stand.S1.2", props=("S1-N-086", "S1-N-088")),
+        "S1: stands without the prop under S1-K-",
+    ),
+    (lambda p: _changed(p, "site.ridge.S1.S2", props=()), "is not named in step site.ridge.S1.S2"),
+    (lambda p: _changed(p, "S1.hoist", props=()), "step S1.hoist: the shell needs a prop under"),
+    (lambda p: _changed(p, "S1.fix.1", props=()), "step S1.fix.1: the shell needs a prop under"),
+    (lambda p: _changed(p, "S1.tighten", props=()), "step S1.tighten: the shell needs a prop under"),
+    (lambda p: _changed(p, "S1.fix.2", predecessors=("S1.edge.upper",)), "but nothing forces step S1.fix.1 before it"),
+    (lambda p: _changed(p, "S1.fix.1", predecessors=("S1.hoist",)), "but nothing forces step S1.edge.upper before it"),
+    (lambda p: _moved(p, "S1-N-040-B1", "S1.tighten"), "S1-N-040-B1 holds a stud, but nothing forces"),
+    (
+        lambda p: _changed(p, "site.cover.S1", predecessors=("site.stand.S1.2", "site.stand.S2.2")),
+        "covers S1, but nothing forces step",
+    ),
+]
+
+
+@pytest.mark.parametrize(("damage", "complaint"), FAULTS)
+def test_the_check_finds_a_damaged_journey(
+    plan: Plan,
+    pair: Gridshell,
+    cut: Segmentation,
+    locking: tuple[LockingOrder, ...],
+    damage: Callable[[Plan], Plan],
+    complaint: str,
+) -> None:
+    assert any(complaint in problem for problem in check_plan(damage(plan), pair, cut, locking))
+
+
+def test_a_shell_that_travels_whole_must_not_be_parted(plan: Plan, pair: Gridshell) -> None:
+    problems = check_plan(plan, pair)
+    assert "S1: travels whole, but step S1.divide is there" in problems
+    assert "S1: expected one stand step with a hold point" in problems
+
+
+def _with_slide(plan: Plan, geodesic: str) -> Plan:
+    """Slide a geodesic in after all beams are laid, instead of laying it."""
+    shell = geodesic[:2]
+    laid = [s for s in plan.steps if s.shell == shell and s.phase.startswith("lay")][-1]
+    steps: list[Step] = []
+    for old in plan.steps:
+        steps.append(replace(old, marks=tuple(mark for mark in old.marks if mark != geodesic)))
+        if old.id == laid.id:
+            slide = replace(old, id=f"{shell}.slide.1", phase="slide", marks=(geodesic,), assemblies=())
+            steps.append(replace(slide, predecessors=(laid.id,)))
+        elif old.id == f"{shell}.stud.1":
+            steps[-1] = replace(steps[-1], predecessors=(f"{shell}.slide.1",))
+    return replace(plan, steps=tuple(replace(s, number=i) for i, s in enumerate(steps, start=1)))
+
+
+def test_a_geodesic_may_be_slid_in_after_the_beams_above_it(plan: Plan, pair: Gridshell, cut: Segmentation) -> None:
+    slid = _with_slide(plan, "S1-G-05")
+    assert check_plan(slid, pair, cut) == []
+    early = _changed(slid, "S1.slide.1", predecessors=("S1.lay.1",))
+    assert any("S1-G-05 in step S1.slide.1 passes" in problem for problem in check_plan(early, pair, cut))
