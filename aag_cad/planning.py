@@ -1,4 +1,4 @@
-"""Planning alone: a design, a gridshell.json or any graph of parts -> plan -> files, or why a part comes when it does."""
+"""Planning alone: a design, a gridshell.json or any graph of parts -> plan -> files; or why a part comes then."""
 
 import json
 from collections.abc import Callable
@@ -11,7 +11,7 @@ import networkx as nx
 from aag_cad.design import load_design
 from aag_cad.design_making import Crew
 from aag_cad.errors import DesignError, FileError
-from aag_cad.export.planning import PLAN_WRITERS, Planning, write_graph_plan
+from aag_cad.export.planning import PLAN_WRITERS, Planning, write_graph_groups, write_graph_plan
 from aag_cad.files import publishing, sizes_below
 from aag_cad.findings import Finding, worst_first
 from aag_cad.parts.model import Gridshell
@@ -90,7 +90,7 @@ def read_source(source: str, people: int | None = None, limits: Limits | None = 
             return Source(gridshell.name, crew, limits or NO_LIMITS, gridshell=gridshell)
         if "nodes" in keys:
             graph = read_graph(text)
-            return Source(str(graph.name), crew, NO_LIMITS, graph=graph)
+            return Source(Path(source).stem, crew, limits or NO_LIMITS, graph=graph)
         raise FileError(f"{source}: neither a gridshell (key shells) nor a graph of parts (keys nodes and edges)")
     design = load_design(source)
     crew = _crew_with(design.crew, people)
@@ -130,6 +130,8 @@ def planned_source(source: Source, language: Language = "en", edges_first: bool 
     writers: dict[str, Callable[[Path], None]] = {
         "files": lambda folder: write_graph_plan(graph, plan, schedule, crew, folder)
     }
+    if source.limits != NO_LIMITS:
+        writers["segments"] = lambda folder: write_graph_groups(graph, source.limits, folder)
     return Result(plan, schedule, (), lambda: graph, writers)
 
 

@@ -8,7 +8,8 @@ import networkx as nx
 from assembly.errors import PlanError
 from assembly.graph import joint_of
 from assembly.language import Language, say, words_table
-from assembly.locking import LockingOrder, frequency
+from assembly.locking import LockingOrder, LockingStep, frequency
+from assembly.names import figure
 from assembly.ranges import joined_ranges
 from assembly.schedule import Schedule
 from assembly.steps import Plan, Step
@@ -81,6 +82,10 @@ def _fastened(
     return found
 
 
+def _hertz(step: LockingStep, language: Language) -> str:
+    return figure(f"{frequency(step.eigenvalues[0]):.2f}", language)
+
+
 def _locked(mark: str, orders: Sequence[LockingOrder], language: Language) -> Iterator[str]:
     """Yield when a flat plank is fixed in the locking order, and what that does."""
     for order in orders:
@@ -90,7 +95,7 @@ def _locked(mark: str, orders: Sequence[LockingOrder], language: Language) -> It
                 yield say(
                     language, "explain.fixed", place=i, count=len(order.steps) - 1,
                     before=before.soft_modes, after=step.soft_modes,
-                    low=frequency(before.eigenvalues[0]), high=frequency(step.eigenvalues[0]),
+                    low=_hertz(before, language), high=_hertz(step, language),
                 )  # fmt: skip
 
 
@@ -140,8 +145,9 @@ def explanation(
     if step is None:
         raise PlanError(f"--explain {mark}: no step of the plan handles it; see the findings of the plan")
     length = max(float(graph.nodes[part]["length_mm"]) for part in parts)
-    mass = sum(float(graph.nodes[part]["mass_kg"]) for part in parts)
-    lines = [say(language, "explain.part", mark=mark, kind=_kind(str(node["kind"]), language), length=length, mass=mass)]
+    mass = figure(f"{sum(float(graph.nodes[part]['mass_kg']) for part in parts):.1f}", language)
+    what = _kind(str(node["kind"]), language)
+    lines = [say(language, "explain.part", mark=mark, kind=what, length=length, mass=mass)]
     beam = node.get("beam", "")
     if beam and beam != mark:
         lines.append(say(language, "explain.of_beam", beam=beam))

@@ -1,7 +1,7 @@
 """How a shell that is cut for the journey is made with its splices, and parted when it is stiff.
 
-It is put together whole in the workshop, because only whole it takes its shape. Every part is added there once; what the
-parting takes out and the joining puts in again are ``extras`` of these steps, and so is the bracing.
+It is put together whole in the workshop, because only whole it takes its shape. Every part is added there once; what
+the parting takes out and the joining puts in again are ``extras`` of these steps, and so is the bracing.
 """
 
 from collections import Counter

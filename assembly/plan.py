@@ -99,9 +99,10 @@ def plan_of(
 ) -> Plan:
     """Return the assembly plan for a crew of ``people`` who lift at most ``lift_limit`` kg each (paper section 3.2).
 
-    ``orders`` say how each shell is laid flat, by mark (none: ``flat_orders``). The geodesics are fixed in the order of ``locking``, one for each shell; without it by their marks. Shells that
-    ``segmentation`` cuts are parted for the journey and joined again on site. PlanError if the layers are woven so that
-    no plank can be slid in, a part belongs to no joint, or the crew is empty.
+    ``orders`` say how each shell is laid flat, by mark (none: ``flat_orders``). The geodesics are fixed in the order of
+    ``locking``, one for each shell; without it by their marks. Shells that ``segmentation`` cuts are parted for the
+    journey and joined again on site. PlanError if the layers are woven so that no plank can be slid in, a part belongs
+    to no joint, or the crew is empty.
     """
     crew, weights = crew_of(people, lift_limit), piece_weights(gridshell)
     locked = {order.shell: order for order in locking}

@@ -22,7 +22,7 @@ from assembly.steps import Plan
 class Planned:
     """What is planned for a gridshell: how it goes up, how its shells are locked and cut, how it comes down, when.
 
-    ``orders`` say in which order each shell is laid flat, ``flat`` where each shell with studs lies on the floor, by mark.
+    ``orders`` say in which order each shell is laid flat, ``flat`` where each shell with studs then lies, by mark.
     """
 
     plan: Plan

@@ -27,7 +27,7 @@ def short_mark(mark: str) -> str:
 
 
 def mark_ranges(marks: Sequence[str]) -> tuple[str, ...]:
-    """Return marks without their shell, three neighbours or more as a range: ``A1-01 … A1-04 L+R``, ``K-012``; sorted by family.
+    """Return marks without their shell, sorted; three neighbours or more as a range: ``A1-01 … A1-04 L+R``.
 
     Marks of several shells keep theirs.
     """

@@ -31,7 +31,7 @@ def shared_pictures(pictures: Mapping[str, str], shown: Iterable[str]) -> Shared
     A path that comes again becomes a ``use`` of one in ``defs``: it takes its paint from where it is used. So does a
     whole picture that is shown again. ValueError if a picture is no SVG file with a view box.
     """
-    times = Counter(shown)
+    times = Counter(list(shown))
     parts = {name: _parts(pictures[name]) for name in times}
     paths = Counter(found for _, inner in parts.values() for found in _PATH.findall(inner))
     names = {found: f"p{i}" for i, found in enumerate(found for found, count in paths.items() if count > 1)}

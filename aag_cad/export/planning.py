@@ -15,16 +15,19 @@ from aag_cad.parts.model import Gridshell
 from assembly.gantt import gantt_svg
 from assembly.graph import assembly_graph
 from assembly.graph_file import graph_json, graphml
+from assembly.graph_page import graph_html
+from assembly.graph_partition import partition_graph
 from assembly.ical import write_calendar
 from assembly.laying_plan import laying_rows
 from assembly.locking import locking_svg, plot_words
-from assembly.page import graph_html, write_page
 from assembly.plan import Plan, plan_json
 from assembly.planned import Planned
-from assembly.printout import write_disassembly, write_sequence
+from assembly.printout import write_booklets
 from assembly.schedule import Schedule, schedule_csv
+from assembly.segment_search import Limits
 
 LAYING_HEADER = ("shell", "mark", "what", "x_mm", "y_mm", "end_x_mm", "end_y_mm")
+GROUPS_HEADER = ("segment", "parts", "mass_kg", "marks")
 
 
 @dataclass(frozen=True)
@@ -75,9 +78,7 @@ def _write_segments(planning: Planning, folder: Path) -> None:
 
 
 def _write_sequence(planning: Planning, folder: Path) -> None:
-    write_sequence(planning.planned, planning.gridshell, folder / "sequence.pdf")
-    write_disassembly(planning.planned, planning.gridshell, folder / "disassembly.pdf")
-    write_page(planning.planned, planning.gridshell, folder / "sequence.html")
+    write_booklets(planning.planned, planning.gridshell, folder)
 
 
 def _write_graph(planning: Planning, folder: Path) -> None:
@@ -95,6 +96,18 @@ PLAN_WRITERS: dict[str, PlanWriter] = {
     "sequence": _write_sequence,
     "graph": _write_graph,
 }
+
+
+def write_graph_groups(graph: "nx.MultiGraph[str]", limits: Limits, folder: Path) -> None:
+    """Write the groups of parts of any graph that fit a transport, with their masses.
+
+    PlanError if a part alone is too heavy.
+    """
+    rows = []
+    for number, group in enumerate(partition_graph(graph, limits), start=1):
+        mass = sum(float(graph.nodes[mark]["mass_kg"]) for mark in group)
+        rows.append((str(number), str(len(group)), f"{mass:.1f}", " ".join(sorted(group))))
+    write_text(folder / "tables" / "segments.csv", csv_text(GROUPS_HEADER, rows))
 
 
 def write_graph_plan(graph: "nx.MultiGraph[str]", plan: Plan, schedule: Schedule, crew: Crew, folder: Path) -> None:

@@ -47,7 +47,8 @@ def test_the_german_booklets_have_no_english_words(booklets: tuple[Booklet, Book
         left = {(i, word[0]) for i, page in enumerate(pages) for word in ENGLISH.finditer(re.sub(r"\S+\.\S+", "", page))}
         assert left == set()
         whole = " ".join(pages)
-        assert [word for word in GERMAN if word not in whole] == []
+        # Small headings are printed in capitals.
+            assert [word for word in GERMAN if word.casefold() not in whole.casefold()] == []
 
 
 def test_the_templates_have_no_words_of_their_own() -> None:
