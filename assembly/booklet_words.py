@@ -24,6 +24,4 @@ def finding_line(finding: Finding, language: Language) -> str:
     unit = f" {finding.unit}" if finding.unit else ""
     found, allowed = (figure(f"{value:.4g}", language) + unit for value in (finding.found, finding.allowed))
     key = f"booklet.findings.{'line' if finding.allowed else 'none'}"
-    return say(
-        language, key, mark=finding.mark, what=finding.what, found=found, allowed=allowed, remedy=finding.remedy
-    )
+    return say(language, key, mark=finding.mark, what=finding.what, found=found, allowed=allowed, remedy=finding.remedy)

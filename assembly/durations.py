@@ -62,11 +62,15 @@ class StepWork:
 
 @dataclass(frozen=True)
 class _Lengths:
-    """Parts by mark, lengths of beams and planks in mm, and the bolts of each shell by kind of joint."""
+    """Parts by mark, lengths of beams and planks in mm, the bolts of each shell by kind of joint.
+
+    ``stands``: in how many steps each shell is stood up; more than one where it travels in segments.
+    """
 
     parts: Mapping[str, Part]
     lengths: Mapping[str, float]
     bolts: Mapping[str, Mapping[JointKind, int]]
+    stands: Mapping[str, int]
 
 
 def _bolt_counts(shell: Shell) -> dict[JointKind, int]:
@@ -76,11 +80,12 @@ def _bolt_counts(shell: Shell) -> dict[JointKind, int]:
     return dict(counts)
 
 
-def _lengths(gridshell: Gridshell) -> _Lengths:
+def _lengths(gridshell: Gridshell, plan: Plan) -> _Lengths:
     parts = {part.mark: part for part in all_parts(gridshell)}
     long = {mark: sizes(part)[0] for mark, part in parts.items() if isinstance(part, _LONG)}
     beams = {beam.mark: beam.curve.length for shell in gridshell.shells for beam in shell.beams}
-    return _Lengths(parts, long | beams, {shell.mark: _bolt_counts(shell) for shell in gridshell.shells})
+    stands = Counter(mark for step in plan.steps if step.phase == "stand" for mark in step.assemblies)
+    return _Lengths(parts, long | beams, {shell.mark: _bolt_counts(shell) for shell in gridshell.shells}, stands)
 
 
 def _work_with(known: _Lengths, step: Step) -> StepWork:
@@ -104,7 +109,8 @@ def _work_with(known: _Lengths, step: Step) -> StepWork:
         bolts = known.bolts.get(step.shell, {})
         done["tighten"] += sum(bolts.get(kind, 0) for kind in _SHELL_BOLTS[phase])
     if phase in _ONCE:
-        done[_ONCE[phase]] += 1
+        parts = known.stands[step.assemblies[0]] if phase == "stand" else 1
+        done[_ONCE[phase]] += 1.0 / parts
     handled["ridge"] += phase in ("ridges", "open ridges")
     handled["hoist"] += phase == "hang"
     handled["slide"] += phase == "slide"
@@ -120,7 +126,7 @@ def step_works(plan: Plan, gridshell: Gridshell) -> dict[str, StepWork]:
 
     PlanError with the mark of a part that the gridshell does not have.
     """
-    works = map(partial(_work_with, _lengths(gridshell)), plan.steps)
+    works = map(partial(_work_with, _lengths(gridshell, plan)), plan.steps)
     return {step.id: work for step, work in zip(plan.steps, works, strict=True)}
 
 

@@ -1,6 +1,6 @@
 """The plan of any graph of parts as one HTML page: its members as lines in plan, and one section a step."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from html import escape
 from math import ceil
 from typing import Any
@@ -21,10 +21,13 @@ from assembly.shared_pictures import shared_pictures
 from assembly.steps import Plan, Step
 
 _WIDTH, _MARGIN = 1800.0, 70.0
-_SIZE = 27.0
+_SIZE = 36.0
 _MOST_NAMES = 40
+# On a larger plan the grey of what is laid already would make every step as heavy as the whole.
+_MOST_LAID = 400
 _SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
 _ALL, _NEW = Style("none", "#b0b0b0", 3.0, "5 6"), Style("none", "#000", 11.0)
+_LAID = Style("none", "#999", 7.0)
 _DOT = Style("#000", "#fff", 2.0)
 
 
@@ -44,15 +47,21 @@ def _line(points: Floats) -> str:
 
 
 def _step_svg(
-    step: Step, lines: Mapping[str, Floats], height: float, units: Mapping[str, Unit], slides: Mapping[str, Any]
+    step: Step,
+    lines: Mapping[str, Floats],
+    height: float,
+    units: Mapping[str, Unit],
+    slides: Mapping[str, Any],
+    laid: Collection[str],
 ) -> str:
-    """Return the plan with what a step lays, slides in or joins over all members, which are dotted."""
+    """Return the plan with what a step lays, slides in or joins over all members: dotted, or grey if ``laid``."""
     own = [mark for mark in dict.fromkeys((*step.assemblies, *step.marks)) if mark in units]
     dots = [lines[mark][0] for mark in step.marks if mark not in units and mark in lines and not own]
     every = "".join(_line(lines[mark]).removeprefix('<path d="').removesuffix('"/>') for mark in units)
     wanted = [(mark, places_along(lines[mark], _SHARES)) for mark in own[:_MOST_NAMES]]
     items = [
         group([f'<path d="{every}"/>'], _ALL),
+        group((_line(lines[mark]) for mark in laid), _LAID),
         group((_line(lines[mark]) for mark in own), _NEW),
         group((circle(point, 9.0) for point in dots), _DOT),
         *(slide_arrow(lines[mark], slides[mark]) for mark in own if mark in slides),
@@ -68,7 +77,7 @@ def _card(plan: Plan, step: Step, words: Mapping[str, Any], picture: str) -> dic
     marks = ", ".join(dict.fromkeys((*step.assemblies, *step.marks)))
     return {
         "number": step.number, "id": step.id, "title": step.title, "shell": step.shell, "phase": step.phase, "key": "",
-        "line": f"{phase} · ", "pictures": [picture], "caption": words["captions"].get(step.phase, ""),
+        "line": f"{phase} · ", "pictures": [picture], "caption": words["captions"].get(f"graph {step.phase}", ""),
         "instructions": step.instructions, "table": {"head": [words["page"]["marks"]], "rows": [[marks]]}, "parts": [],
         "extras": step.extras, "propped": ", ".join(step.props), "crew": step.crew, "tools": step.tools, "heaviest": "",
         "after": [titles[before] for before in step.predecessors], "hold": step.hold, "added": "",
@@ -106,7 +115,11 @@ def graph_html(plan: Plan, schedule: Schedule, graph: "nx.MultiGraph[str]") -> s
     lines, height = _on_sheet(graph, units)
     slid = any(step.phase == "slide" for step in plan.steps)
     slides = {slide.unit: slide.end for slide in interlacing(graph, plan.language).slides} if slid else {}
-    drawn = {f"step-{step.number}": _step_svg(step, lines, height, units, slides) for step in plan.steps}
+    drawn, laid = {}, dict[str, None]()
+    for step in plan.steps:
+        shown = laid if len(units) <= _MOST_LAID else ()
+        drawn[f"step-{step.number}"] = _step_svg(step, lines, height, units, slides, shown)
+        laid |= dict.fromkeys(mark for mark in (*step.assemblies, *step.marks) if mark in units)
     shared = shared_pictures(drawn, drawn)
     said = words["card"] | {"counted": words["card"]["at_hand"], "extras": words["card"]["extras_up"]}
     cards = [_card(plan, step, words, f"step-{step.number}") for step in plan.steps]

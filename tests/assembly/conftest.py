@@ -21,7 +21,5 @@ def planned(design: Design, gridshell: Gridshell) -> Planned:
 def german(design: Design, gridshell: Gridshell, planned: Planned) -> Planned:
     """The same plans in German; locking, segments and schedules have no words."""
     people, lift = design.crew.people, design.crew.lift_limit
-    up = plan_of(
-        gridshell, people, lift, locking=planned.locking, segmentation=planned.segmentation, language="de"
-    )
+    up = plan_of(gridshell, people, lift, locking=planned.locking, segmentation=planned.segmentation, language="de")
     return replace(planned, plan=up, down=disassembly_of(gridshell, people, lift, language="de"))

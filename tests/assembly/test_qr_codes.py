@@ -13,8 +13,7 @@ from assembly.planned import Planned
 from assembly.qr import MOST_CHARACTERS, qr_rows, qr_svg
 
 # The side of the code on a card, and the smallest module that a telephone reads at arm's length, mm.
-SIDE, LEAST_MODULE = 19.0, 0.3
-
+SIDE, LEAST_MODULE = 21.0, 0.3
 
 
 @pytest.mark.parametrize("content", ["vault S1.lay.1: A1-01 … A1-06", "x", "S1-G-05" * 20])
