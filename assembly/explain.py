@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from difflib import get_close_matches
 
 import networkx as nx
 
@@ -37,9 +38,8 @@ def _piece(graph: "nx.MultiGraph[str]", mark: str) -> tuple[str, ...]:
         return (mark,)
     parts = tuple(node for node, beam in _beams(graph).items() if beam == mark)
     if not parts:
-        known = sorted(node for node in graph if node.startswith(mark))[:_MOST_SHOWN]
-        listed = ", ".join(known or sorted(graph)[:_MOST_SHOWN])
-        raise PlanError(f"--explain {mark}: no part or beam has this mark; marks are such as {listed}")
+        near = get_close_matches(mark, sorted({*graph, *_beams(graph).values()} - {""}), _MOST_SHOWN, 0.0)
+        raise PlanError(f"--explain {mark}: no part or beam has this mark; the nearest are {', '.join(near)}")
     return parts
 
 

@@ -16,7 +16,8 @@ FILES = {
     "overview.png", "templates.pdf", "labels.pdf", "summary.json", "tables/parts.csv", "tables/holes.csv",
     "tables/checks.csv", "tables/prefabrication.csv", "tables/drilling.csv", "tables/purchases.csv",
     "tables/cutting.csv", "tables/facade.csv", "tables/schedule.csv", "tables/locking.csv", "locking.svg",
-    "schedule.svg", "schedule.ics", "disassembly.json", "reuse/passports.json", "reuse/passports.pdf",
+    "schedule.svg", "schedule.ics", "disassembly.json", "disassembly.pdf", "disassembly.html", "sequence.html",
+    "tables/segments.csv", "tables/splices.csv", "tables/laying.csv", "reuse/passports.json", "reuse/passports.pdf",
     "reuse/reuse.csv",
     *(f"facade/P-{number:02d}.dxf" for number in range(1, 14)),
 }  # fmt: skip

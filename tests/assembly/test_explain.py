@@ -5,17 +5,11 @@ import re
 import networkx as nx
 import pytest
 
-from aag_cad.design import Design
 from aag_cad.parts.model import Gridshell
 from assembly.errors import PlanError
 from assembly.explain import explanation, step_of_parts
 from assembly.graph import assembly_graph
-from assembly.planned import Planned, planned_of
-
-
-@pytest.fixture(scope="module")
-def planned(gridshell: Gridshell, design: Design) -> Planned:
-    return planned_of(gridshell, design.crew)
+from assembly.planned import Planned
 
 
 @pytest.fixture(scope="module")
@@ -59,14 +53,12 @@ def test_a_plank_of_a_beam_is_made_before_it_is_laid(planned: Planned, graph: "n
 def test_a_mark_that_does_not_exist_is_refused_with_marks_that_do(
     planned: Planned, graph: "nx.MultiGraph[str]"
 ) -> None:
-    with pytest.raises(PlanError, match=r"--explain S1-G: no part .* S1-G-01, S1-G-02"):
-        _told(planned, graph, "S1-G")
+    with pytest.raises(PlanError, match=r"--explain S1-G-5: no part .* S1-G-05"):
+        _told(planned, graph, "S1-G-5")
 
 
-def test_the_explanation_is_german_for_a_german_plan(
-    gridshell: Gridshell, design: Design, graph: "nx.MultiGraph[str]"
-) -> None:
-    german = planned_of(gridshell, design.crew, language="de")
-    text = "\n".join(explanation(graph, german.plan, "S1-G-05", german.schedule, german.locking))
+def test_the_explanation_is_german_for_a_german_plan(german: Planned, graph: "nx.MultiGraph[str]") -> None:
+    text = _told(german, graph, "S1-G-05")
     assert "Früher geht nicht:" in text
+    assert "5,08 Hz" in text
     assert "step" not in text
