@@ -68,16 +68,6 @@ class Schedule:
         return self.makespan / self.day_minutes
 
 
-@dataclass(frozen=True)
-class Task:
-    """A step as programs of work planning take it; ``duration`` is of ISO 8601, in minutes of work."""
-
-    id: str
-    name: str
-    duration: str
-    predecessors: tuple[str, ...]
-
-
 def precedence(plan: Plan, minutes: Mapping[str, int]) -> "nx.DiGraph[str]":
     """Return the steps as a graph: an edge to each step from what it waits for, weighted by the minutes of the latter.
 
@@ -258,11 +248,3 @@ def schedule_rows(plan: Plan, schedule: Schedule) -> list[tuple[str, ...]]:
 def schedule_csv(plan: Plan, schedule: Schedule) -> str:
     """Return the schedule as CSV: one header line, LF, steps in their order, times in minutes of work."""
     return csv_text(SCHEDULE_HEADER, schedule_rows(plan, schedule))
-
-
-def schedule_tasks(plan: Plan, schedule: Schedule) -> tuple[Task, ...]:
-    """Return the steps as tasks for IFC: durations like ``PT95M``."""
-    return tuple(
-        Task(step.id, step.title, f"PT{when.end_minute - when.start_minute}M", step.predecessors)
-        for step, when in zip(plan.steps, schedule.steps, strict=True)
-    )

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import segno
 import typst
 
 from aag_cad.files import write_bytes
@@ -22,6 +21,7 @@ from aag_cad.resources import template
 from aag_cad.shop.groups import DrillGroup, all_planks, drawn_face, drill_groups
 from aag_cad.units import Floats
 from assembly.outline import Outline, shell_outline
+from assembly.qr import qr_svg
 
 KEY_WIDTH, KEY_HEIGHT = 30.0, 21.0
 _KEY_MARGIN = 0.8
@@ -32,35 +32,6 @@ _LAYERS = {-1: "inner", 0: "middle", 1: "outer"}
 def qr_content(gridshell: Gridshell, mark: str) -> str:
     """Return what the QR code of a label says: the project's name and the mark."""
     return f"{gridshell.name} {mark}"
-
-
-def qr_rows(content: str) -> list[list[int]]:
-    """Return a QR code without its quiet zone as rows of modules, 1 dark and 0 light; error correction M or better."""
-    return [list(row) for row in segno.make(content, error="m", micro=False).matrix]
-
-
-def _runs(rows: list[list[int]]) -> list[list[int]]:
-    """Return the dark modules as bars (column, row, width): fewer shapes, and no seams along a row."""
-    bars = []
-    for y, row in enumerate(rows):
-        start = None
-        for x, dark in enumerate([*row, 0]):
-            if dark and start is None:
-                start = x
-            elif not dark and start is not None:
-                bars.append([start, y, x - start])
-                start = None
-    return bars
-
-
-def _qr_svg(content: str) -> str:
-    rows = qr_rows(content)
-    size = len(rows)
-    bars = "".join(f"M{x} {y}h{width}v1h-{width}z" for x, y, width in _runs(rows))
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{size}" height="{size}" viewBox="0 0 {size} {size}">'
-        f'<path d="{bars}"/></svg>'
-    )
 
 
 def _few(line: Floats) -> list[list[float]]:
@@ -115,7 +86,7 @@ def _plank_label(gridshell: Gridshell, plank: Plank, group: DrillGroup, outline:
             f"template {group.mark} · {member.laid}",
         ],
         "note": f"stick at START on {drawn_face(plank)}",
-        "qr": _qr_svg(qr_content(gridshell, plank.mark)),
+        "qr": qr_svg(qr_content(gridshell, plank.mark)),
     }
 
 
@@ -132,7 +103,7 @@ def _beam_label(gridshell: Gridshell, beam: Beam, lengths: dict[str, float], out
             f"{beam.family} · {_LAYERS[beam.layer]} layer",
         ],
         "note": "stick at START, outer edge of plank L; dots: studs, rings: blocks",
-        "qr": _qr_svg(qr_content(gridshell, beam.mark)),
+        "qr": qr_svg(qr_content(gridshell, beam.mark)),
     }
 
 
