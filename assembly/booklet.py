@@ -1,25 +1,24 @@
 """What the booklets of a gridshell print: words, tables and pictures as plain data, for paper and for telephones."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 from typing import Any, Literal, TypeAlias
 
 from aag_cad.findings import worst_first
 from aag_cad.parts.model import Gridshell, all_parts
 from assembly.booklet_sheets import Made, laying_sheets, locking_sheets, map_sheets, segment_sheets
-from assembly.booklet_words import booklet_words, finding_line
+from assembly.booklet_words import booklet_words, finding_lines
 from assembly.cards import Weights, step_card, totals
 from assembly.gantt import gantt_svg
 from assembly.language import Language
 from assembly.perspective import perspective_svg
-from assembly.plan import piece_weights
+from assembly.plan import piece_weights, segment_weights
 from assembly.planned import Planned
 from assembly.qr import qr_svg
 from assembly.scenes import home_shell, legend_svgs, phase_svg, picture_key, step_pictures
 from assembly.schedule import Schedule
 from assembly.sections import block_section_svg, node_section_svg
-from assembly.segments import Segmentation
 from assembly.sheets import Sheets, sheets_of, shell_twins
 from assembly.site_scenes import key_svg
 from assembly.steps import Plan, Step
@@ -150,12 +149,14 @@ def common_of(gridshell: Gridshell, language: Language) -> Common:
     return Common(gridshell, piece_weights(gridshell), pictures | drawn, maps)
 
 
-def _booklet(
-    kind: Kind, plan: Plan, schedule: Schedule, common: Common, segmentation: Segmentation | None = None
-) -> tuple[Booklet, Sheets]:
+def _booklet(kind: Kind, planned: Planned, common: Common) -> tuple[Booklet, Sheets]:
     """Return what both booklets have: cover, words, list of steps, schedule, cards."""
+    up = kind == "sequence"
+    plan, schedule = (planned.plan, planned.schedule) if up else (planned.down, planned.down_schedule)
     gridshell, pictures = common.gridshell, dict(common.pictures)
-    words, sheets = _sheet_words(kind, plan), sheets_of(plan, gridshell, segmentation)
+    common = replace(common, weights={**common.weights, **segment_weights(gridshell, planned.segmentation)})
+    slides = [slide for order in planned.orders.values() for slide in order.slides]
+    words, sheets = _sheet_words(kind, plan), sheets_of(plan, gridshell, planned.segmentation, slides)
     pictures["schedule"] = gantt_svg(plan, schedule, f"{gridshell.title}: {words['schedule']['title']}")
     data = {
         "kind": kind,
@@ -172,7 +173,7 @@ def _booklet(
         "layings": [],
         "lockings": [],
         "segments": [],
-        "findings": [finding_line(finding, plan.language) for finding in worst_first(plan.findings)],
+        "findings": finding_lines(worst_first(plan.findings), plan.language),
         **common.maps,
     }
     return Booklet(data, pictures), sheets
@@ -198,15 +199,13 @@ def _how(words: Mapping[str, Any], plan: Plan, sheets: Sheets, cards: Sequence[M
 
 def sequence_booklet(planned: Planned, common: Common) -> Booklet:
     """Return the booklet of putting together, in the language of its plan."""
-    plan, gridshell, parted = planned.plan, common.gridshell, planned.segmentation
-    booklet, sheets = _booklet("sequence", plan, planned.schedule, common, planned.segmentation)
+    plan, gridshell = planned.plan, common.gridshell
+    booklet, sheets = _booklet("sequence", planned, common)
     words, cards = booklet.data["words"], booklet.data["cards"]
     data, pictures = dict(booklet.data), dict(booklet.pictures)
-    found = worst_first((*plan.findings, *parted.problems, *parted.changes))
-    data["findings"] = [finding_line(finding, plan.language) for finding in found]
     for more, drawn in (
         _how(words, plan, sheets, cards),
-        laying_sheets(gridshell, planned.flat, sheets.twins, plan.language),
+        laying_sheets(gridshell, planned, sheets.twins),
         locking_sheets(planned.locking, sheets.twins, plan.language),
         segment_sheets(gridshell, planned.segmentation, plan.language),
     ):
@@ -217,4 +216,4 @@ def sequence_booklet(planned: Planned, common: Common) -> Booklet:
 
 def disassembly_booklet(planned: Planned, common: Common) -> Booklet:
     """Return the booklet of taking down, in the language of its plan."""
-    return _booklet("disassembly", planned.down, planned.down_schedule, common)[0]
+    return _booklet("disassembly", planned, common)[0]

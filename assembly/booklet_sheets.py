@@ -4,20 +4,22 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from aag_cad.parts.model import Gridshell, Shell
-from assembly.flat import flat_order
-from assembly.flattening import FlatState
-from assembly.label_map import label_map_svg
+from assembly.label_map import MAP_SIZE, label_map_svg
 from assembly.language import Language, say
 from assembly.layer_legend import layer_legend_svg
 from assembly.laying_plan import laying_header, laying_plan_svg, laying_rows
 from assembly.locking import LockingOrder, locking_svg, locking_table, plot_words
 from assembly.names import figure
+from assembly.planned import Planned
+from assembly.ranges import joined_ranges
 from assembly.segment_picture import segment_svg
 from assembly.segment_sheet import segment_cards
 from assembly.segments import Segmentation
 
 # The joints on each map: those that a crew looks for on the whole shell, and the many blocks on one of their own.
 _MAPS = (("N", "F", "R"), ("K",))
+# The first stands upright above the legend; tenths of a mm, so that its numbers are printed as large as they are drawn.
+_MAP_SIZES = ((1800.0, 1500.0), MAP_SIZE)
 
 Made = tuple[dict[str, Any], dict[str, str]]
 
@@ -41,7 +43,7 @@ def map_sheets(gridshell: Gridshell, twins: Mapping[str, str], language: Languag
     for shell, names in _firsts(gridshell, twins):
         for i, families in enumerate(_MAPS):
             picture, legend = f"map-{shell.mark}-{i}", f"layers-{shell.mark}" if i == 0 else ""
-            pictures[picture] = label_map_svg(shell, families, language)
+            pictures[picture] = label_map_svg(shell, families, language, _MAP_SIZES[i])
             if legend:
                 pictures[legend] = layer_legend_svg(shell, language)
             sheets.append({
@@ -53,16 +55,14 @@ def map_sheets(gridshell: Gridshell, twins: Mapping[str, str], language: Languag
     return {"maps": sheets}, pictures
 
 
-def laying_sheets(
-    gridshell: Gridshell, flat: Mapping[str, FlatState], twins: Mapping[str, str], language: Language
-) -> Made:
+def laying_sheets(gridshell: Gridshell, planned: Planned, twins: Mapping[str, str]) -> Made:
     """Return the flat laying plans with their coordinates, of members and of single points; and their pictures."""
-    sheets, pictures = [], dict[str, str]()
+    sheets, pictures, language = [], dict[str, str](), planned.plan.language
     for shell, names in _firsts(gridshell, twins):
-        if shell.mark not in flat:
+        if shell.mark not in planned.flat:
             continue
-        state = flat[shell.mark]
-        pictures[f"laying-{shell.mark}"] = laying_plan_svg(shell, state, flat_order(shell), language)
+        state, order = planned.flat[shell.mark], planned.orders[shell.mark]
+        pictures[f"laying-{shell.mark}"] = laying_plan_svg(shell, state, order, language)
         rows, head = laying_rows(shell, state, language), laying_header(language)
         sheets.append({
             "title": say(language, "booklet.laying.title", shells=names),
@@ -70,7 +70,7 @@ def laying_sheets(
             "note": say(language, "booklet.laying.note"),
             "picture": f"laying-{shell.mark}",
             "members": {"head": list(head), "rows": [list(row) for row in rows if row[-1]]},
-            "points": {"head": list(head[:4]), "rows": [list(row[:4]) for row in rows if not row[-1]]},
+            "points": {"head": [*head[:2], "x mm", "y mm"], "rows": [list(row[:4]) for row in rows if not row[-1]]},
         })  # fmt: skip
     return {"layings": sheets}, pictures
 
@@ -86,6 +86,7 @@ def locking_sheets(orders: Sequence[LockingOrder], twins: Mapping[str, str], lan
             "picture": f"locking-{order.shell}",
             "table": locking_table(order, language),
             "price": say(language, "booklet.locking.price", price=price) if order.edges_first else "",
+            "hoists": say(language, "booklet.locking.hoists", joints=joined_ranges(order.hoists)),
         })  # fmt: skip
     return {"lockings": sheets}, pictures
 

@@ -1,5 +1,7 @@
 """The words of the booklets in one language, for their templates."""
 
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any
 
 from aag_cad.findings import Finding
@@ -17,6 +19,14 @@ def booklet_words(language: Language) -> dict[str, Any]:
 
     words: dict[str, Any] = spoken(words_table("booklet"))
     return words
+
+
+def finding_lines(findings: Iterable[Finding], language: Language) -> list[str]:
+    """Return findings in lines of a language: those that say the same of several marks in one, each only once."""
+    marks: dict[str, dict[str, None]] = {}
+    for finding in findings:
+        marks.setdefault(finding_line(replace(finding, mark="{mark}"), language), {})[finding.mark] = None
+    return [line.replace("{mark}", ", ".join(named)) for line, named in marks.items()]
 
 
 def finding_line(finding: Finding, language: Language) -> str:

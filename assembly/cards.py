@@ -1,7 +1,7 @@
 """The words and tables of the step cards, as plain data for the template."""
 
 from collections import defaultdict
-from collections.abc import Mapping, Set
+from collections.abc import Mapping, Sequence, Set
 from itertools import zip_longest
 from typing import Any
 
@@ -123,7 +123,7 @@ def _feet_table(gridshell: Gridshell, language: Language) -> dict[str, Any]:
         matrix = frame_matrix(shell.placement)
         for footing in shell.footings:
             x, y, _z = (matrix[:3, :3] @ np.array(footing.frame.origin) + matrix[:3, 3]).tolist()
-            rows.append([footing.mark, f"{x:.0f}", f"{y:.0f}"])
+            rows.append([footing.mark, f"{round(x)}", f"{round(y)}"])
     return _table(language, "feet", rows)
 
 
@@ -177,6 +177,15 @@ def qr_text(name: str, step: Step, weights: Weights) -> str:
     return head + (text or step.shell)
 
 
+def gathered(extras: Sequence[str]) -> list[str]:
+    """Return extras as they are printed: those alike before their last colon in one line, each after a semicolon."""
+    tails: dict[str, list[str]] = defaultdict(list)
+    for extra in extras:
+        head, colon, tail = extra.rpartition(": ")
+        tails[head + colon].append(tail)
+    return [head + "; ".join(listed) for head, listed in tails.items()]
+
+
 def step_card(
     gridshell: Gridshell, plan: Plan, step: Step, parts: Mapping[str, Part], weights: Weights
 ) -> dict[str, Any]:
@@ -184,7 +193,7 @@ def step_card(
     language = plan.language
     titles = {s.id: f"{s.number}  {s.title}" for s in plan.steps}
     chapter = [s for s in plan.steps if s.shell == step.shell]
-    moved = step.marks if step.phase in _STAYING else lifted(step.phase, step.marks, step.assemblies)
+    moved = step.marks if step.phase in _STAYING else lifted(step, weights)
     heaviest = max((mark for mark in moved if mark in weights), key=lambda mark: (weights[mark][0], mark), default="")
     told = bool(heaviest) and weights[heaviest][0] >= _WORTH_SAYING
     worked_on = {step.shell, *(shell_of(mark) for mark in step.marks)}
@@ -208,7 +217,7 @@ def step_card(
         "instructions": list(step.instructions),
         "hold": step.hold,
         "props": [short_mark(mark) if step.shell else mark for mark in step.props],
-        "extras": list(step.extras),
+        "extras": gathered(step.extras),
         "qr": qr_text(plan.name, step, weights),
     }
 

@@ -8,6 +8,7 @@ from itertools import chain, groupby
 import numpy as np
 
 from aag_cad.geometry.framed import curvatures_at
+from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Bolt, Gridshell, Rod, Shell, Timber
 from aag_cad.units import MM_PER_M
 from assembly.control import prop_points
@@ -16,9 +17,12 @@ from assembly.flat import FlatOrder, flat_orders, groups_of
 from assembly.kit import Kit, shell_kit
 from assembly.language import Language, say, says
 from assembly.layers import crossing_levels, lying_unit
+from assembly.parting import splice_extras
 from assembly.plan import piece_weights
 from assembly.process import BEAMS_A_STEP, EVERYONE, LAID_A_STEP, PAIR
-from assembly.ranges import joined_ranges
+from assembly.ranges import joined_ranges, short_mark
+from assembly.seams import segments_of
+from assembly.segments import Segmentation
 from assembly.site import ridge_pairs
 from assembly.steps import DownPhase, Plan, Step
 from assembly.wording import Wording, spanners
@@ -207,10 +211,12 @@ def _words(
         "spring": spring,
         "studs": say(language, f"down.words.{'studs_out' if task.marks else 'studs_stay'}"),
     }
+    straps = any(parse_mark(mark).family == "R" for mark in task.marks)
+    key = f"down.{task.phase}" + " alone" * (task.phase == "pull edge planks" and not straps)
     return Wording(
-        tools=says(language, f"down.{task.phase}.tools", **figures),
-        instructions=says(language, f"down.{task.phase}.instructions", **figures),
-        hold=say(language, f"down.{task.phase}.hold", **figures),
+        tools=says(language, f"{key}.tools", **figures),
+        instructions=says(language, f"{key}.instructions", **figures),
+        hold=say(language, f"{key}.hold", **figures),
     )
 
 
@@ -221,6 +227,7 @@ def _step(
     crew: Crew,
     weights: Mapping[str, tuple[float, float]],
     props: Mapping[str, tuple[str, ...]],
+    extras: tuple[str, ...],
     language: Language,
 ) -> Step:
     """Return the step of a task, with the hands for its heaviest and longest piece; ``props`` by shell."""
@@ -242,7 +249,21 @@ def _step(
         instructions=words.instructions,
         hold=words.hold,
         props=_flat(props[mark] for mark in held) if task.phase in _PROPPED else (),
+        extras=extras,
     )
+
+
+def _extras(
+    task: _Task, segmentation: Segmentation | None, weights: Mapping[str, tuple[float, float]], language: Language
+) -> tuple[str, ...]:
+    """Return what a task takes off of the splices of cut shells; these are lifted off whole."""
+    own = [s for mark in task.assemblies for s in segments_of(segmentation, mark)] if task.phase == "lift off" else []
+    if not own or segmentation is None:
+        return tuple(splice_extras(language, segmentation, set(task.marks), "unmade"))
+    shell = own[0].shell
+    lines = dict.fromkeys(short_mark(s.line) for s in segmentation.splices if s.line.startswith(f"{shell}-"))
+    told = {"segments": ", ".join(s.name for s in own), "lines": ", ".join(lines), "mass": weights[shell][0]}
+    return (say(language, "site.unmade.whole", **told),)
 
 
 def disassembly_of(
@@ -251,6 +272,7 @@ def disassembly_of(
     lift_limit: float,
     *,
     orders: Mapping[str, FlatOrder] | None = None,
+    segmentation: Segmentation | None = None,
     language: Language = "en",
 ) -> Plan:
     """Return the plan of taking a gridshell down for reuse, by ``people`` who lift at most ``lift_limit`` kg each.
@@ -258,8 +280,9 @@ def disassembly_of(
     ``marks`` are the parts that leave in a step, in the order in which they do. Cover off, all shells propped, ridges
     opened, each shell lifted off, released while it hangs, lowered flat, taken apart and measured (paper, section 5).
     One set of hoists serves all shells, so that one hangs at a time. ``orders`` say how each shell was laid flat, by
-    mark (none: ``flat_orders``); what was slid in is pulled out first. The texts are those of
-    ``templates/printouts/words/down.toml``.
+    mark (none: ``flat_orders``); what was slid in is pulled out first. Shells that ``segmentation`` cut are lifted off
+    whole, as they were joined on site; their splices come apart with their beams and edge planks. The texts are those
+    of ``templates/printouts/words/down.toml``.
 
     PlanError if the layers are woven in a circle, a part belongs to no joint, or the crew is empty.
     """
@@ -282,5 +305,6 @@ def disassembly_of(
             last = task.phase in _EACH_HELD or all(later.phase != task.phase for later in tasks[i + 1 :])
             words = _words(gridshell, task, weights, language)
             words = words if last else replace(words, hold="")
-            steps.append(_step(task, len(steps) + 1, words, crew, weights, props, language))
+            extras = _extras(task, segmentation, weights, language)
+            steps.append(_step(task, len(steps) + 1, words, crew, weights, props, extras, language))
     return Plan(gridshell.name, tuple(steps), language)

@@ -79,7 +79,8 @@ def down_scene(shell: Shell, step: Step, there: frozenset[str], outer: set[str])
             return Scene(there=there, new=step.marks, names=_short(plates), rings=rings)
         case "prop":
             edges = [plank.mark for plank in shell.planks if plank.family == "E"]
-            return Scene(there=there, worked_on=edges, names=_short(edges), props=step.props)
+            told = _short(step.props)
+            return Scene(there=there, worked_on=edges, names=_short(edges), props=step.props, numbers=told)
         case "lift off":
             feet = feet_of(shell)
             return Scene(
@@ -112,7 +113,8 @@ def down_pictures(sheets: Sheets, shell: Shell, step: Step, there: frozenset[str
     if step.phase in ("unbolt", "pull studs"):
         strips = beam_strips_svg(shell, _beams_of(shell, step), PAGE_WIDTH)
         return strips, scene_svg(sheets.small[shell.mark], scene)
-    large = scene_svg(sheets.large[shell.mark], scene)
+    edges = scene.names if step.phase == "pull edge planks" else ()
+    large = scene_svg(sheets.large[shell.mark], scene, [mark for mark in edges if mark in step.marks])
     match step.phase:
         case "hang" | "lower":
             return large, elevation_svg(shell, sling_points(shell), flat=step.phase == "lower")

@@ -1,6 +1,7 @@
 """The plan of any graph of parts as one HTML page: its members as lines in plan, and one section a step."""
 
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
 from html import escape
 from math import ceil
 from typing import Any
@@ -9,15 +10,16 @@ import networkx as nx
 import numpy as np
 
 from aag_cad.units import Floats
-from assembly.booklet_words import booklet_words, finding_line
+from assembly.booklet_words import booklet_words, finding_lines
 from assembly.drawing import Style, circle, group, label_svg, path, placed_labels, places_along, svg
-from assembly.interlacing import interlacing
+from assembly.interlacing import Interlacing, interlacing
 from assembly.laying_units import Unit, units_of
 from assembly.markup import card_section, contents, filled_page
 from assembly.names import phase_name
 from assembly.pictures import slide_arrow
 from assembly.schedule import Schedule
 from assembly.shared_pictures import shared_pictures
+from assembly.sliding import End
 from assembly.steps import Plan, Step
 
 _WIDTH, _MARGIN = 1800.0, 70.0
@@ -28,7 +30,24 @@ _MOST_LAID = 400
 _SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
 _ALL, _NEW = Style("none", "#b0b0b0", 3.0, "5 6"), Style("none", "#000", 11.0)
 _LAID = Style("none", "#999", 7.0)
-_DOT = Style("#000", "#fff", 2.0)
+_DOT, _RING = Style("#000", "#fff", 2.0), Style("#fff", "#000", 4.0)
+
+
+@dataclass(frozen=True)
+class _Way:
+    """How a unit is slid in: the end that lies outside longest, and what it passes as shares of its length."""
+
+    end: End
+    passed: tuple[float, ...]
+
+
+def _ways(woven: Interlacing, units: Mapping[str, Unit]) -> dict[str, _Way]:
+    stations = {
+        (unit, crossing.joint): mm / units[unit].length
+        for crossing in woven.crossings
+        for unit, mm in ((crossing.lower, crossing.lower_mm), (crossing.upper, crossing.upper_mm))
+    }
+    return {s.unit: _Way(s.end, tuple(stations[s.unit, joint] for joint in s.crossings)) for s in woven.slides}
 
 
 def _on_sheet(graph: "nx.MultiGraph[str]", units: Mapping[str, Unit]) -> tuple[dict[str, Floats], float]:
@@ -51,12 +70,13 @@ def _step_svg(
     lines: Mapping[str, Floats],
     height: float,
     units: Mapping[str, Unit],
-    slides: Mapping[str, Any],
+    slides: Mapping[str, _Way],
     laid: Collection[str],
 ) -> str:
     """Return the plan with what a step lays, slides in or joins over all members: dotted, or grey if ``laid``."""
     own = [mark for mark in dict.fromkeys((*step.assemblies, *step.marks)) if mark in units]
     dots = [lines[mark][0] for mark in step.marks if mark not in units and mark in lines and not own]
+    passed = [point for mark in own if mark in slides for point in places_along(lines[mark], slides[mark].passed)]
     every = "".join(_line(lines[mark]).removeprefix('<path d="').removesuffix('"/>') for mark in units)
     wanted = [(mark, places_along(lines[mark], _SHARES)) for mark in own[:_MOST_NAMES]]
     items = [
@@ -64,7 +84,8 @@ def _step_svg(
         group((_line(lines[mark]) for mark in laid), _LAID),
         group((_line(lines[mark]) for mark in own), _NEW),
         group((circle(point, 9.0) for point in dots), _DOT),
-        *(slide_arrow(lines[mark], slides[mark]) for mark in own if mark in slides),
+        group((circle(point, 11.0) for point in passed), _RING),
+        *(slide_arrow(lines[mark], slides[mark].end) for mark in own if mark in slides),
         label_svg(placed_labels(wanted, _SIZE, (0.0, 0.0, _WIDTH, height))),
     ]
     return svg(_WIDTH, height, items)
@@ -102,7 +123,7 @@ def _chapters(plan: Plan, words: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 def _findings(plan: Plan, words: Mapping[str, Any]) -> Iterator[str]:
     if plan.findings:
-        lines = "".join(f"<li>{escape(finding_line(finding, plan.language))}</li>" for finding in plan.findings)
+        lines = "".join(f"<li>{escape(line)}</li>" for line in finding_lines(plan.findings, plan.language))
         yield f'<section id="findings"><h2>{escape(words["findings"]["title"])}</h2><ul>{lines}</ul></section>'
 
 
@@ -114,7 +135,7 @@ def graph_html(plan: Plan, schedule: Schedule, graph: "nx.MultiGraph[str]") -> s
     words, units = booklet_words(plan.language), units_of(graph)
     lines, height = _on_sheet(graph, units)
     slid = any(step.phase == "slide" for step in plan.steps)
-    slides = {slide.unit: slide.end for slide in interlacing(graph, plan.language).slides} if slid else {}
+    slides = _ways(interlacing(graph, plan.language, later=()), units) if slid else {}
     drawn, laid = {}, dict[str, None]()
     for step in plan.steps:
         shown = laid if len(units) <= _MOST_LAID else ()

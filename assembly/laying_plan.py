@@ -38,8 +38,8 @@ from assembly.ranges import short_mark
 Page: TypeAlias = Literal["a4", "a3"]
 Row: TypeAlias = tuple[str, ...]
 
-# Inside the margins of a landscape page, tenths of a mm; room for a heading is left above.
-PAGES: dict[Page, tuple[float, float]] = {"a4": (2770.0, 1780.0), "a3": (4000.0, 2600.0)}
+# Inside the margins of a landscape page, tenths of a mm: 12 mm left and right. A heading goes over the upper edge.
+PAGES: dict[Page, tuple[float, float]] = {"a4": (2730.0, 1780.0), "a3": (3960.0, 2600.0)}
 SCALES = (10, 20, 25, 30, 40, 50, 75, 100, 125, 150, 200, 250)
 _LEFT, _TOP, _RIGHT, _BOTTOM = 95.0, 60.0, 95.0, 180.0
 _UNITS_PER_MM = 10.0

@@ -7,6 +7,7 @@ beams. So no eigenvalue ever falls when a plank is fixed (Courant's minimax prin
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import chain
 
 import numpy as np
@@ -43,6 +44,30 @@ class GridFrame:
     parts: dict[str, csc_array]
     mass: csc_array
     weight: Floats
+
+    @cached_property
+    def pattern(self) -> csc_array:
+        """Where any part has an entry (f, f): a sum over parts is then one of plain vectors."""
+        pattern = csc_array(sum((_filled(part) for part in self.parts.values()), csc_array(self.mass.shape)))
+        pattern.sort_indices()
+        return pattern
+
+    @cached_property
+    def places(self) -> dict[str, Ints]:
+        """Where the entries of each part stand among those of the pattern."""
+        all_keys = _entry_keys(self.pattern)
+        return {mark: np.searchsorted(all_keys, _entry_keys(part)) for mark, part in self.parts.items()}
+
+
+def _filled(matrix: csc_array) -> csc_array:
+    """Return a matrix with 1 at every entry, zero or not."""
+    return csc_array((np.ones_like(matrix.data), matrix.indices, matrix.indptr), shape=matrix.shape)
+
+
+def _entry_keys(matrix: csc_array) -> Ints:
+    """Return a number for the column and row of every entry, in the order of the entries."""
+    columns = np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
+    return np.asarray(columns * matrix.shape[0] + matrix.indices, dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,7 +197,11 @@ def released_frame(shell: Shell, timber: Timber, model: LockingModel) -> GridFra
 
 def _state(grid: GridFrame, fixed: Collection[str]) -> tuple[csc_array, Ints]:
     """Return the stiffness (a, a) of beams and fixed planks and the places (a,) of the unknowns that it holds."""
-    total = csc_array(sum((grid.parts[mark] for mark in sorted(fixed) if mark in grid.parts), grid.parts[_GRID]))
+    values = np.zeros(grid.pattern.nnz)
+    for mark in (_GRID, *sorted(mark for mark in fixed if mark in grid.parts)):
+        values[grid.places[mark]] += grid.parts[mark].data
+    total = csc_array((values, grid.pattern.indices, grid.pattern.indptr), shape=grid.pattern.shape, copy=True)
+    total.eliminate_zeros()
     active = np.flatnonzero(total.diagonal())
     return csc_array(total[active][:, active]), active
 

@@ -61,7 +61,8 @@ def _back(data: Mapping[str, Any], pictures: Mapping[str, str]) -> Iterator[str]
     for i, sheet in enumerate(data["lockings"]):
         table = html_table(sheet["table"]["head"], sheet["table"]["rows"])
         told = f"<p>{escape(data['words']['locking']['text'])}</p>"
-        drawn = f'{zoomed(pictures[sheet["picture"]])}<div class="wide">{table}</div><p>{escape(sheet["price"])}</p>'
+        notes = f"<p>{escape(sheet['hoists'])}</p><p>{escape(sheet['price'])}</p>"
+        drawn = f'{zoomed(pictures[sheet["picture"]])}<div class="wide">{table}</div>{notes}'
         yield f'<section id="locking-{i}"><h2>{escape(sheet["title"])}</h2>{told}{drawn}</section>'
     for i, sheet in enumerate(data["segments"]):
         table = html_table(("", ""), sheet["facts"])

@@ -5,7 +5,7 @@ the parting takes out and the joining puts in again are ``extras`` of these step
 """
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from aag_cad.parts.marks import parse_mark
@@ -57,11 +57,20 @@ def brace_extras(language: Language, segment: Segment, chapter: str) -> Iterator
         yield say(language, f"site.{chapter}.brace", segment=segment.name, brace=brace_words(brace, language))
 
 
-def _made(language: Language, splice: Splice) -> str:
+def splice_extras(
+    language: Language, segmentation: Segmentation | None, planks: Collection[str], chapter: str
+) -> Iterator[str]:
+    """Yield how planks are cut and spliced that are made into beams (``made``) or that leave (``unmade``)."""
+    for splice in segmentation.splices if segmentation else ():
+        if any(cut.plank in planks for cut in splice.cuts):
+            yield _spliced(language, splice, chapter)
+
+
+def _spliced(language: Language, splice: Splice, chapter: str) -> str:
     stations = [cut.station for cut in splice.cuts]
     return say(
         language,
-        f"site.made.{splice.kind}",
+        f"site.{chapter}.{splice.kind}",
         beam=short_mark(splice.member),
         line=short_mark(splice.line),
         joint=short_mark(splice.joint) if splice.joint else "",
@@ -80,11 +89,9 @@ def made_with_splices(
 
     The works that add their planks get an extra for each splice: where the planks are parted, block or plate, bolts.
     """
-    splices = segmentation.splices if segmentation else ()
     for work in works:
-        added = set(work.marks)
-        cut = [splice for splice in splices if any(cut.plank in added for cut in splice.cuts)]
-        yield replace(work, extras=(*work.extras, *(_made(language, splice) for splice in cut))) if cut else work
+        cut = tuple(splice_extras(language, segmentation, set(work.marks), "made"))
+        yield replace(work, extras=(*work.extras, *cut)) if cut else work
 
 
 def divide_works(shell: Shell, segmentation: Segmentation | None = None, language: Language = "en") -> tuple[Work, ...]:

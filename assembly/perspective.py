@@ -150,11 +150,14 @@ def _face_items(faces: Faces, project: Projection, sun: Floats) -> Iterator[str]
     seen = seen[unhidden(samples_of(flat[seen], depth[seen]))]
     covers = covers_of(samples_of(flat[seen], depth[seen]), len(seen))
     colours, edges = _shaded(faces, depth.mean(axis=1), sun)
-    grown = _grown(flat)
-    for i in seen[painting_order(covers, depth[seen].mean(axis=1))].tolist():
-        yield f'<path fill="{colours[i]}" d="{_relative(grown[i])}z"/>'
-        if np.linalg.norm(flat[i, 1] - flat[i, 0]) > _THIN:
-            yield f'<path stroke="{edges[i]}" d="{_relative(flat[i, 1:3])}{_relative(flat[i, [3, 0]])}"/>'
+    order = seen[painting_order(covers, depth[seen].mean(axis=1))]
+    shown = flat[order]
+    sides = zip(_relative(shown[:, 1:3]), _relative(shown[:, [3, 0]]), strict=True)
+    wide = (np.linalg.norm(shown[:, 1] - shown[:, 0], axis=1) > _THIN).tolist()
+    for i, outline, (left, right), edged in zip(order.tolist(), _relative(_grown(shown)), sides, wide, strict=True):
+        yield f'<path fill="{colours[i]}" d="{outline}z"/>'
+        if edged:
+            yield f'<path stroke="{edges[i]}" d="{left}{right}"/>'
 
 
 def _grown(flat: Floats) -> Floats:
@@ -164,12 +167,14 @@ def _grown(flat: Floats) -> Floats:
     return np.concatenate([flat[:, :2] - reach, flat[:, 2:] + reach[:, ::-1]], axis=1)
 
 
-def _relative(points: Floats) -> str:
-    """Return a path through points (k, 2) as a start and moves from point to point, the shortest way to write it."""
+def _relative(points: Floats) -> list[str]:
+    """Return paths through points (n, k, 2), each as a start and moves from point to point: the shortest to write."""
     tenths = np.round(points * 10.0).astype(int)
-    moves = " ".join(f"{dx} {dy}" for dx, dy in np.diff(tenths, axis=0).tolist())
-    x, y = tenths[0].tolist()
-    return f"M{x} {y}l{moves}".replace(" -", "-")
+    starts, moves = tenths[:, 0].tolist(), np.diff(tenths, axis=1).tolist()
+    return [
+        f"M{x} {y}l{' '.join(f'{dx} {dy}' for dx, dy in steps)}".replace(" -", "-")
+        for (x, y), steps in zip(starts, moves, strict=True)
+    ]
 
 
 def perspective_svg(

@@ -15,6 +15,7 @@ from assembly.drawing import (
     group,
     label_box,
     label_svg,
+    number,
     path,
     placed_labels,
     places_along,
@@ -48,6 +49,7 @@ LABEL_SIZE = 27.0
 DOT_LABEL_SIZE = 23.0
 _DOT = 10.0
 _PROP = 12.0
+_BESIDE = 230.0
 _ON_THE_GROUND = ("C", "F")
 
 _SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88)
@@ -158,6 +160,11 @@ def scene_items(outline: Outline, scene: Scene) -> Iterable[str]:
     yield _labels(outline, scene)
 
 
-def scene_svg(outline: Outline, scene: Scene) -> str:
-    """Return the picture of a scene."""
-    return svg(outline.width, outline.height, scene_items(outline, scene))
+def scene_svg(outline: Outline, scene: Scene, around: Collection[str] = ()) -> str:
+    """Return the picture of a scene; of its height only what lies ``around`` some planks, if any are named."""
+    if not around:
+        return svg(outline.width, outline.height, scene_items(outline, scene))
+    heights = np.concatenate([outline.planks[mark][:, 1] for mark in around])
+    top, foot = max(0.0, float(heights.min()) - _BESIDE), min(outline.height, float(heights.max()) + _BESIDE)
+    moved = (f'<g transform="translate(0 {number(-top)})">', *scene_items(outline, scene), "</g>")
+    return svg(outline.width, foot - top, moved)

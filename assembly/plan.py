@@ -1,10 +1,11 @@
 """The assembly plan of a gridshell: every part in exactly one step, no step before what it rests on."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict
 
 from aag_cad.errors import FileError
+from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell, JointKind, Shell, all_parts
 from aag_cad.parts.quantities import mass, sizes
 from aag_cad.parts.store import value_of
@@ -16,9 +17,10 @@ from assembly.language import Language, say
 from assembly.locking import LockingOrder
 from assembly.parting import divide_works, made_with_splices
 from assembly.process import Work, shell_works
+from assembly.seams import segments_of
 from assembly.segments import Segmentation, segment_findings
 from assembly.site import site_works
-from assembly.steps import Phase, Plan, Step
+from assembly.steps import Plan, Step
 from assembly.wording import Fastener, fasteners_by_kind, wording
 
 __all__ = ["Plan", "Step", "plan_json", "plan_of", "read_plan"]
@@ -27,10 +29,10 @@ PLAN_VERSION = 2
 _EACH_HELD = ("hoist", "stand", "splice")
 
 
-def piece_weights(gridshell: Gridshell) -> dict[str, tuple[float, float]]:
+def piece_weights(gridshell: Gridshell, segmentation: Segmentation | None = None) -> dict[str, tuple[float, float]]:
     """Return (mass in kg, length in mm) of every part, of every beam with its blocks and bolts, and of every shell.
 
-    The length of a shell counts as 0.
+    Of every segment of a cut shell as well, without its bracing. The length of shells and segments counts as 0.
     """
     weights = {part.mark: (mass(part, gridshell.timber), sizes(part)[0]) for part in all_parts(gridshell)}
     for shell in gridshell.shells:
@@ -46,12 +48,45 @@ def piece_weights(gridshell: Gridshell) -> dict[str, tuple[float, float]]:
         weights[shell.mark] = sum(weights[mark][0] for group in made for mark in group), 0.0
         for beam, marks in kit.beams.items():
             weights[beam] = sum(weights[mark][0] for mark in marks), lengths[beam]
-    return weights
+    return weights | segment_weights(gridshell, segmentation)
 
 
-def lifted(phase: Phase, marks: tuple[str, ...], assemblies: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the pieces that a step carries: shells that are only joined stay where they are."""
-    return marks if phase == "ridges" else assemblies or marks
+def segment_weights(gridshell: Gridshell, segmentation: Segmentation | None) -> dict[str, tuple[float, float]]:
+    """Return (mass in kg, 0) of every segment of the shells that are cut, without its bracing."""
+    cut = (segment for shell in gridshell.shells for segment in segments_of(segmentation, shell.mark))
+    return {segment.name: (segment.mass, 0.0) for segment in cut}
+
+
+def lifted(step: Step | Work, weights: Collection[str]) -> tuple[str, ...]:
+    """Return the pieces that a step carries, of those with ``weights``: what is only joined stays where it is.
+
+    Of a shell that is cut one segment at a time is carried.
+    """
+    segment = step.id.removeprefix("site.stand.")
+    match step.phase:
+        case "ridges" | "splice":
+            return step.marks
+        case "stand" if segment in weights:
+            return (segment,)
+        case "divide":
+            return tuple(mark for mark in weights if mark.startswith(tuple(f"{shell}." for shell in step.assemblies)))
+        case _:
+            return step.assemblies or step.marks
+
+
+def _told(work: Work, fasteners: Mapping[JointKind, Sequence[Fastener]]) -> str:
+    """Return the key of the texts of a piece of work: its phase, or one of its special cases."""
+    match work.phase:
+        case "stand" if work.id.removeprefix("site.stand.") not in work.assemblies:
+            return "stand segment" if work.marks else "raise segment"
+        case "stand" if not work.props:
+            return "stand free"
+        case "edge planks" if not any(parse_mark(mark).family == "R" for mark in work.marks):
+            return "edge planks alone"
+        case "tighten" if not fasteners.get("ridge"):
+            return "tighten alone"
+        case phase:
+            return phase
 
 
 def _step(
@@ -65,8 +100,11 @@ def _step(
     language: Language,
 ) -> Step:
     """Return the step of a piece of work: with its words, and with the hands for its heaviest and longest piece."""
-    words = wording(work.phase, fasteners, work.below, language)
-    pieces = [weights[mark] for mark in lifted(work.phase, work.marks, work.assemblies)]
+    told = _told(work, fasteners)
+    words = wording(work.phase, fasteners, work.below, language, told=told)
+    # Where a segment comes down is told between lifting it and setting it down.
+    first = 1 if told in ("stand segment", "raise segment") else len(words.instructions)
+    pieces = [weights[mark] for mark in lifted(work, weights)]
     hands = hands_for(crew, max((m for m, _ in pieces), default=0.0), max((n for _, n in pieces), default=0.0))
     geared = hands.gear and work.least_crew <= crew.people
     return Step(
@@ -80,7 +118,7 @@ def _step(
         tools=(*words.tools, say(language, "steps.gear")) if geared else words.tools,
         crew=max(hands.people, min(work.least_crew, crew.people)),
         predecessors=work.after,
-        instructions=(*words.instructions, *work.notes),
+        instructions=(*words.instructions[:first], *work.notes, *words.instructions[first:]),
         hold=words.hold if last else "",
         props=work.props,
         extras=work.extras,
@@ -104,7 +142,7 @@ def plan_of(
     journey and joined again on site. PlanError if the layers are woven so that no plank can be slid in, a part belongs
     to no joint, or the crew is empty.
     """
-    crew, weights = crew_of(people, lift_limit), piece_weights(gridshell)
+    crew, weights = crew_of(people, lift_limit), piece_weights(gridshell, segmentation)
     locked = {order.shell: order for order in locking}
     laid = orders if orders is not None else flat_orders(gridshell, language)
     chapters: list[tuple[str, Sequence[Shell], tuple[Work, ...]]] = []
@@ -119,7 +157,7 @@ def plan_of(
         for i, work in enumerate(works):
             last = work.phase in _EACH_HELD or all(later.phase != work.phase for later in works[i + 1 :])
             steps.append(_step(work, len(steps) + 1, last, name, fasteners, crew, weights, language))
-    craned = {shell.mark for shell in gridshell.shells}
+    craned = {*(shell.mark for shell in gridshell.shells), *segment_weights(gridshell, segmentation)}
     carried = {mark: weight for mark, weight in weights.items() if mark not in craned}
     findings = (
         *lifting_findings(carried, crew, language),

@@ -74,5 +74,5 @@ def planned_of(
         for finding in flat_findings(shell, flat[shell.mark], gridshell.timber, language)
     )
     plan = replace(plan, findings=(*plan.findings, *lying))
-    down = disassembly_of(gridshell, *size, orders=orders, language=language)
+    down = disassembly_of(gridshell, *size, orders=orders, segmentation=found, language=language)
     return Planned(plan, scheduled(plan), orders, flat, locking, found, down, scheduled(down))

@@ -4,6 +4,7 @@ import json
 import os
 import shutil
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import typst
@@ -53,12 +54,18 @@ def write_disassembly(planned: Planned, gridshell: Gridshell, path: str | os.Pat
 
 
 def write_booklets(planned: Planned, gridshell: Gridshell, folder: Path) -> None:
-    """Write sequence.pdf, disassembly.pdf and sequence.html to a folder: what they share is made only once.
+    """Write both booklets to a folder, each as PDF and as HTML page: what they share is made only once.
 
-    FileError if one cannot be written.
+    The files are sequence.pdf, sequence.html, disassembly.pdf and disassembly.html. FileError if one cannot be written.
     """
     common = common_of(gridshell, planned.plan.language)
-    sequence = sequence_booklet(planned, common)
-    write_bytes(folder / "sequence.pdf", booklet_pdf(sequence))
-    write_bytes(folder / "disassembly.pdf", booklet_pdf(disassembly_booklet(planned, common)))
-    write_text(folder / "sequence.html", page_html(sequence, planned.plan, gridshell))
+    makers = (("sequence", sequence_booklet, planned.plan), ("disassembly", disassembly_booklet, planned.down))
+    # Typst sets each booklet in a thread, while here its page and the next booklet are made.
+    with ThreadPoolExecutor(max_workers=len(makers)) as typesetters:
+        pdfs = {}
+        for name, made, plan in makers:
+            booklet = made(planned, common)
+            pdfs[name] = typesetters.submit(booklet_pdf, booklet)
+            write_text(folder / f"{name}.html", page_html(booklet, plan, gridshell))
+        for name, pdf in pdfs.items():
+            write_bytes(folder / f"{name}.pdf", pdf.result())

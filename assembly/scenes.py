@@ -1,6 +1,6 @@
 """Which picture belongs to which step: what is there before it, what is new, what is numbered."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -10,8 +10,8 @@ from assembly.control import control_figures, sling_points
 from assembly.details import beam_strips_svg
 from assembly.down_scenes import down_pictures
 from assembly.drawing import group, path, svg
-from assembly.flat import flat_order
 from assembly.graph import joint_of
+from assembly.interlacing import Slide
 from assembly.kit import driven_from_outside
 from assembly.outline import shell_outline
 from assembly.picture_marks import middle_of, numbers_of
@@ -70,10 +70,10 @@ def _fixing_scene(shell: Shell, step: Step, there: frozenset[str], single: Seque
                  numbers=numbers_of((*dots, *rings)), done=done, props=step.props)  # fmt: skip
 
 
-def _sliding_scene(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
+def _sliding_scene(shell: Shell, step: Step, there: frozenset[str], known: Mapping[str, Slide]) -> Scene:
     """Return the planks that are slid in, with the crossings that they pass."""
     units = (*step.assemblies, *step.marks)
-    slides = {slide.unit: slide for slide in flat_order(shell).slides if slide.unit in units}
+    slides = {unit: known[unit] for unit in units if unit in known}
     passed = tuple(dict.fromkeys(joint for slide in slides.values() for joint in slide.crossings))
     return Scene(there=there, new=_planks_of(shell, units), names=_short(units), starts=units, rings=passed,
                  numbers=numbers_of(passed), slides={unit: slide.end for unit, slide in slides.items()})  # fmt: skip
@@ -87,7 +87,7 @@ def _edge_scene(shell: Shell, step: Step, there: frozenset[str], flat: Sequence[
     return Scene(there=there, new=(*flat, *straps), names=_short(flat), rings=screwed, numbers=told, props=step.props)
 
 
-def _shell_scene(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
+def _shell_scene(shell: Shell, step: Step, there: frozenset[str], slides: Mapping[str, Slide]) -> Scene:
     """Return what the picture of a step of one shell shows."""
     single = [plank.mark for plank in shell.planks if not plank.beam]
     flat = tuple(mark for mark in step.marks if mark in single)
@@ -99,7 +99,7 @@ def _shell_scene(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
         case "lay A1" | "lay G" | "lay A2" | "lay":
             return Scene(there=there, new=_planks_of(shell, units), names=_short(units), starts=units)
         case "slide":
-            return _sliding_scene(shell, step, there)
+            return _sliding_scene(shell, step, there, slides)
         case "studs":
             joints = _joints_of(step)
             done = tuple(stud.mark for stud in shell.studs if stud.mark in there)
@@ -108,7 +108,8 @@ def _shell_scene(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
             control, slings = control_figures(shell).studs, sling_points(shell)
             tags = {mark: name for name, mark in control.items()} | dict.fromkeys(slings, "H")
             props = tuple(mark for mark in step.props if mark not in tags)
-            return Scene(there=there, dots=slings, rings=tuple(control.values()), tags=tags, props=props)
+            return Scene(there=there, dots=slings, rings=tuple(control.values()), tags=tags, props=props,
+                         numbers=_short(props))  # fmt: skip
         case "edge planks":
             return _edge_scene(shell, step, there, flat)
         case "fix geodesics":
@@ -123,7 +124,9 @@ def _shell_scene(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
 def _cover_scene(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
     """Return what the picture of the covering of one shell shows: strips with their marks, bars, places of screws."""
     strips, mullions = [strip.mark for strip in shell.strips], [mullion.mark for mullion in shell.mullions]
-    return Scene(there=there, new=step.marks, names=_short([*strips, *mullions]), rings=_joints_of(step, "W"))
+    blocks = _short([block.mark for block in shell.blocks if block.mark in step.marks])
+    return Scene(there=there, new=step.marks, names=_short([*strips, *mullions]), rings=_joints_of(step, "W"),
+                 numbers=blocks)  # fmt: skip
 
 
 def home_shell(step: Step) -> str:
@@ -177,11 +180,12 @@ def step_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
         return down_pictures(sheets, shell, step, there, driven_from_outside(shell))
     if step.phase == "cover":
         return (scene_svg(sheets.large[shell.mark], _cover_scene(shell, step, there)),)
-    scene = _shell_scene(shell, step, there)
+    scene = _shell_scene(shell, step, there, sheets.slides)
     if step.phase == "prefabricate":
         strips = beam_strips_svg(shell, _made_beams(shell, step), PAGE_WIDTH)
         return strips, scene_svg(sheets.small[shell.mark], scene)
-    large = scene_svg(sheets.large[shell.mark], scene)
+    edges = scene.names if step.phase == "edge planks" else ()
+    large = scene_svg(sheets.large[shell.mark], scene, [mark for mark in edges if mark in step.marks])
     if step.phase == "hoist":
         return large, elevation_svg(shell)
     straps = [strap for strap in shell.straps if strap.mark in step.marks]
@@ -191,9 +195,9 @@ def step_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
 def phase_svg(sheets: Sheets, plan: Plan, step: Step) -> str:
     """Return a small picture without words of the first shell as a step leaves it."""
     shell = next(shell for shell in sheets.gridshell.shells if shell.mark == step.shell)
-    scene = _shell_scene(shell, step, sheets.before[step.id])
+    scene = _shell_scene(shell, step, sheets.before[step.id], sheets.slides)
     same = [s for s in plan.steps if s.shell == step.shell and s.phase == step.phase]
-    scenes = [_shell_scene(shell, s, frozenset()) for s in same]
+    scenes = [_shell_scene(shell, s, frozenset(), sheets.slides) for s in same]
     new = {mark for each in scenes for mark in each.new}
     dots = [mark for each in scenes for mark in (*each.dots, *(each.rings if step.phase == "fix geodesics" else ()))]
     there = {plank for plank in scene.there if plank not in new}

@@ -23,7 +23,7 @@ def _words(language: Language, key: str, **figures: object) -> str:
 
 def _limits(limits: Limits, language: Language) -> str:
     room = {"length": limits.length, "width": limits.width, "height": limits.height, "load": limits.load}
-    return _words(language, "limits", **room)
+    return _words(language, "limits" if math.isfinite(limits.load) else "limits_room", **room)
 
 
 def _up(size: float) -> float:

@@ -98,7 +98,8 @@ def segment_scene(shell: Shell, step: Step, segmentation: Segmentation, stood: S
         new = [key for segment in moved for key in own[segment.name]]
         feet = tuple(foot for foot in feet_of(shell) if _geodesic_of(shell, foot) in new)
         names = {line: short_mark(line) for segment in moved for line in segment.geodesics}
-        return Scene(there=there, new=new, names=names, rings=feet, numbers=numbers_of(feet), props=step.props)
+        numbers = numbers_of(feet) | {mark: short_mark(mark) for mark in step.props}
+        return Scene(there=there, new=new, names=names, rings=feet, numbers=numbers, props=step.props)
     splices = [splice for splice in segmentation.splices if splice.line.startswith(f"{shell.mark}-")]
     splices = _between(splices, moved) if moved else splices
     lines = dict.fromkeys(splice.line for splice in splices)

@@ -101,7 +101,8 @@ def _room(segment: Segment, limits: Limits, language: Language) -> str:
         return _say(language, "value.free")
     if segment.fits:
         left = " x ".join(_number(-value) or "…" for value in segment.over[:3])
-        return _say(language, "value.fits", left=left, mass=_number(-segment.over[3]) or "…")
+        mass = _number(-segment.over[3])
+        return _say(language, "value.fits" if mass else "value.fits_room", left=left, mass=mass)
     sizes = zip(("length", "width", "height", "mass"), segment.over, strict=True)
     over = [_say(language, f"value.{key}_over", over=_number(value)) for key, value in sizes if value > 0.0]
     return _say(language, "value.not_fits", over=", ".join(over))
@@ -157,7 +158,8 @@ def _facts(plan: Segmentation, segment: Segment, language: Language) -> Iterator
     whole = [mark for mark in segment.parts if parse_mark(mark).family in _PLANKS]
     steel = _number(segment.mass - segment.timber)
     yield "geodesics", joined_ranges(segment.geodesics)
-    yield "parts", _say(language, "value.parts", parts=len(segment.parts), pieces=len(segment.pieces))
+    key = "value.parts" if segment.pieces else "value.all_parts"
+    yield "parts", _say(language, key, parts=len(segment.parts), pieces=len(segment.pieces))
     yield "planks", joined_ranges(whole)
     yield "cut_planks", joined_ranges(sorted({piece.plank for piece in segment.pieces}))
     yield "mass", _say(language, "value.mass", mass=_number(segment.mass), steel=steel)

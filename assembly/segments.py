@@ -136,11 +136,12 @@ def _over(pose: Pose, run: Run, limits: Limits) -> tuple[float, float, float, fl
     return length, width, height, run.mass - limits.load
 
 
-def _segment(item: Divisible, name: str, start: int, end: int, limits: Limits) -> Segment:
-    shell, grid, run = item.shell, item.tracks, run_between(item, start, end)
+def _segment(item: Divisible, name: str, stops: tuple[int, int], run: Run, shell_pose: Pose, limits: Limits) -> Segment:
+    """Return the segment of a run between two stops, lying in a pose that is given in the coordinates of its shell."""
+    shell, grid, (start, end) = item.shell, item.tracks, stops
     matrix = frame_matrix(shell.placement)
     centre = matrix[:3, :3] @ run.centre + matrix[:3, 3]
-    pose = _vault_pose(pose_in(run, limits), shell.placement)
+    pose = _vault_pose(shell_pose, shell.placement)
     studs, blocks = _points(item, run, matrix)
     cuts = cut_stops(grid, start, end)
     sides = {grid.bay(start // 2): start % 2 == 0} if start in cuts else {}
@@ -197,6 +198,7 @@ def segments(gridshell: Gridshell, limits: Limits, language: Language = "en") ->
     changes: list[Finding] = []
     problems: list[Finding] = []
     known: dict[tuple[str, ...], tuple[tuple[int, ...] | None, str]] = {}
+    poses: dict[tuple[str, ...], list[Pose]] = {}
     for shell in gridshell.shells:
         item, key = divisible(shell, gridshell.timber), _shape_key(shell)
         if key not in known:
@@ -204,8 +206,11 @@ def segments(gridshell: Gridshell, limits: Limits, language: Language = "en") ->
             known[key] = stops, "" if stops == () else wish(item, limits, language)
         stops, wished = known[key]
         ends = segment_ends(item, stops or ())
+        runs = [run_between(item, *pair) for pair in ends]
+        if key not in poses:
+            poses[key] = [pose_in(run, limits) for run in runs]
         names = [shell.mark] if len(ends) == 1 else [f"{shell.mark}.{i}" for i in range(1, len(ends) + 1)]
-        own = [_segment(item, name, *pair, limits) for name, pair in zip(names, ends, strict=True)]
+        own = [_segment(item, *told, limits) for told in zip(names, ends, runs, poses[key], strict=True)]
         cut = [splice for stop in stops or () for splice in run_splices(item, stop)]
         made += own
         splices += cut

@@ -1,6 +1,6 @@
 """What the pictures of a plan are drawn on: outlines of shells alike only once, and what is in place at each step."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +21,7 @@ from aag_cad.parts.model import (
     shell_parts,
 )
 from aag_cad.units import Floats
+from assembly.interlacing import Slide
 from assembly.kit import shell_kit
 from assembly.language import Language
 from assembly.outline import Outline, ridge_outline, shell_outline, vault_outline
@@ -42,7 +43,7 @@ class Sheets:
 
     ``twins`` gives for each shell the first one that is alike but for its number; ``large`` and ``small`` are the
     outlines of these. ``standing`` are the planks of the whole shells, ``stood``
-    the segments of cut ones, that stand on the site before each step.
+    the segments of cut ones, that stand on the site before each step; ``slides`` say how planks are slid in, by mark.
     """
 
     gridshell: Gridshell
@@ -55,6 +56,7 @@ class Sheets:
     standing: dict[str, frozenset[str]]
     stood: dict[str, tuple[str, ...]]
     segmentation: Segmentation | None
+    slides: Mapping[str, Slide]
     language: Language
 
 
@@ -156,10 +158,12 @@ def ridge_planks(gridshell: Gridshell, pair: Sequence[str]) -> tuple[str, ...]:
     return min((gap, ends) for ends, gap in gaps.items())[1] if gaps else ()
 
 
-def sheets_of(plan: Plan, gridshell: Gridshell, segmentation: Segmentation | None = None) -> Sheets:
+def sheets_of(
+    plan: Plan, gridshell: Gridshell, segmentation: Segmentation | None = None, slides: Iterable[Slide] = ()
+) -> Sheets:
     """Return all outlines, drawn once for all steps of a plan of putting together or of taking down.
 
-    ``segmentation`` is needed where shells stand in segments.
+    ``segmentation`` is needed where shells stand in segments, ``slides`` where planks are slid in.
     """
     twins = shell_twins(gridshell)
     firsts = [shell for shell in gridshell.shells if twins[shell.mark] == shell.mark]
@@ -179,5 +183,6 @@ def sheets_of(plan: Plan, gridshell: Gridshell, segmentation: Segmentation | Non
         standing=_standing(plan, gridshell, down),
         stood=stood_segments(plan, segmentation),
         segmentation=segmentation,
+        slides={slide.unit: slide for slide in slides},
         language=plan.language,
     )

@@ -75,11 +75,14 @@ def wording(
     fasteners: Mapping[JointKind, Sequence[Fastener]],
     below: str = "",
     language: Language = "en",
+    *,
+    told: str = "",
 ) -> Wording:
     """Return the words for a phase of work on joints with some fasteners.
 
-    ``below`` is what a laid layer rests on, in the language of the card; "" stands for the layer beneath. The texts are
-    those of ``templates/printouts/words/phases.toml``; a screw's hole is pre-drilled to 0.7 of its diameter.
+    ``told`` is the key of its texts, where a phase has several. ``below`` is what a laid layer rests on, in the
+    language of the card; "" stands for the layer beneath. The texts are those of
+    ``templates/printouts/words/phases.toml``; a screw's hole is pre-drilled to 0.7 of its diameter.
     """
     handled = [part for kind in _HANDLED.get(phase, ()) for part in fasteners.get(kind, ())]
     bolts = sorted({part_name(part, language) for part in handled if isinstance(part, Bolt)})
@@ -89,8 +92,9 @@ def wording(
         "bolts": _list_of(bolts, say(language, "phases.words.bolts"), language),
         "below": below or say(language, "phases.words.below"),
     }
+    key = f"phases.{told or phase}"
     return Wording(
-        tools=says(language, f"phases.{phase}.tools", **figures),
-        instructions=says(language, f"phases.{phase}.instructions", **figures),
-        hold=say(language, f"phases.{phase}.hold", **figures),
+        tools=says(language, f"{key}.tools", **figures),
+        instructions=says(language, f"{key}.instructions", **figures),
+        hold=say(language, f"{key}.hold", **figures),
     )

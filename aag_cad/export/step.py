@@ -56,17 +56,18 @@ def _document(gridshell: Gridshell, solids: Mapping[str, TopoDS_Solid]) -> TDocS
     for shell in gridshell.shells:
         _add(tools, vault, _shell(tools, shell, products), shell.placement, shell.mark)
     for part in ridge_parts(gridshell):
-        _add(tools, vault, products[product_key(part)], part_frame(part), part.mark)
+        _add(tools, vault, products[part.mark], part_frame(part), part.mark)
     tools.shapes.UpdateAssemblies()
     return document
 
 
 def _products(tools: _Tools, gridshell: Gridshell, solids: Mapping[str, TopoDS_Solid]) -> dict[str, TDF_Label]:
-    """Return the labels of all products by key; products of the same name but different make are numbered."""
+    """Return the product's label of each part by its mark; products of one name but different make are numbered."""
     labels: dict[str, TDF_Label] = {}
     taken: Counter[str] = Counter()
+    keys = {part.mark: product_key(part) for part in all_parts(gridshell)}
     for part in all_parts(gridshell):
-        key = product_key(part)
+        key = keys[part.mark]
         if key in labels:
             continue
         name = product_name(part)
@@ -75,7 +76,7 @@ def _products(tools: _Tools, gridshell: Gridshell, solids: Mapping[str, TopoDS_S
         named(labels[key], name if taken[name] == 1 else f"{name} ({taken[name]})")
         tint = Quantity_Color(*colour(part), Quantity_TypeOfColor.Quantity_TOC_sRGB)
         tools.colours.SetColor(labels[key], tint, XCAFDoc_ColorType.XCAFDoc_ColorSurf)
-    return labels
+    return {mark: labels[key] for mark, key in keys.items()}
 
 
 def _shell(tools: _Tools, shell: Shell, products: Mapping[str, TDF_Label]) -> TDF_Label:
@@ -84,7 +85,7 @@ def _shell(tools: _Tools, shell: Shell, products: Mapping[str, TDF_Label]) -> TD
     home = beam_of_parts(shell)
     for part in shell_parts(shell):
         parent = beams[home[part.mark]] if part.mark in home else whole
-        _add(tools, parent, products[product_key(part)], part_frame(part), part.mark)
+        _add(tools, parent, products[part.mark], part_frame(part), part.mark)
     for mark, beam in beams.items():
         _add(tools, whole, beam, None, mark)
     return whole

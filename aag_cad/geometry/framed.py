@@ -50,7 +50,9 @@ class FramedCurve:
             )
         )
 
-    __hash__ = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        """Return a hash by length and ends, so that functions of curves can remember what they gave."""
+        return hash((len(self.stations), self.length, *self.points[0].tolist(), *self.points[-1].tolist()))
 
 
 @dataclass(frozen=True, eq=False)

@@ -166,9 +166,9 @@ def geodesic_turn(beam: Beam, stations: Floats) -> Floats:
     half = np.diff(stations) / 2.0
     pieces = max(1, int(np.ceil(2.0 * half.max() / _SPACING)))
     nodes, weights = _GAUSS
-    for piece in range(pieces):
-        at = stations[:-1, None] + half[:, None] * (2.0 * piece + 1.0 + nodes) / pieces
-        curvature = curvatures_at(beam.curve, at.ravel()).geodesic.reshape(at.shape)
+    along = 2.0 * np.arange(pieces)[:, None, None] + 1.0 + nodes
+    at = stations[:-1, None] + half[:, None] * along / pieces
+    for curvature in curvatures_at(beam.curve, at.ravel()).geodesic.reshape(at.shape):
         turn += half / pieces * (curvature @ weights)
     return turn
 

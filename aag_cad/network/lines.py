@@ -60,7 +60,7 @@ def _inside_intervals(region: Region, slope: int, intercept: float, step: float)
         return region.margin(s, intercept + slope * s) + _EDGE
 
     grid = np.arange(region.bottom - step, region.highest + step, step / 40.0)
-    signs = [margin(s) > 0.0 for s in grid]
+    signs = [margin(s) > 0.0 for s in grid.tolist()]
     edges = [
         float(brentq(margin, a, b, xtol=1e-14))
         for (a, b), (x, y) in zip(pairwise(grid), pairwise(signs), strict=True)

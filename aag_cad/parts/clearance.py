@@ -81,8 +81,9 @@ def is_free(points: Floats, among: Iterable[Obstacle], limit: float = CONTACT) -
         hit = np.all((obstacle.boxes[:, 0] < high) & (obstacle.boxes[:, 1] > low), axis=1)
         if not hit.any():
             continue
-        boxes = obstacle.boxes[hit]
-        inside = np.all((points[:, None] > boxes[:, 0] - _MARGIN) & (points[:, None] < boxes[:, 1] + _MARGIN), axis=2)
+        inside = np.ones((len(points), int(hit.sum())), dtype=bool)
+        for along, box in zip(points.T, obstacle.boxes[hit].T, strict=True):
+            inside &= (along[:, None] > box[0] - _MARGIN) & (along[:, None] < box[1] + _MARGIN)
         near = points[inside.any(axis=1)]
         if len(near):
             local = (near - obstacle.matrix[:3, 3]) @ obstacle.matrix[:3, :3]

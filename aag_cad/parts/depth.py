@@ -5,8 +5,9 @@ from collections.abc import Iterable
 import numpy as np
 from scipy.spatial import cKDTree
 
+from aag_cad.geometry.surface import dot
 from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
-from aag_cad.parts.forming import blank_points, formed_points
+from aag_cad.parts.forming import blank_points, formed_points, plank_axes
 from aag_cad.parts.mesh import product_mesh
 from aag_cad.parts.model import (
     Blade,
@@ -75,17 +76,39 @@ def surface_points(part: Part) -> Floats:
     return np.concatenate([np.column_stack([walls, np.repeat(heights, len(ring))]), mesh.vertices])
 
 
-def _bar_depths(bar: FlatBar, points: Floats) -> Floats:
-    """Return depths in a formed bar; points farther from its curve than its section reaches get minus infinity."""
-    half_width, half_thickness = bar.blank.section.width / 2.0, bar.blank.section.thickness / 2.0
-    away, _nearest = cKDTree(bar.curve.points).query(points)
-    reach = np.hypot(np.diff(bar.curve.stations).max() / 2.0, np.hypot(half_width, half_thickness))
-    near = away <= reach
+def _blank_depths(bar: FlatBar, blank: Floats) -> Floats:
+    """Return how deep points (n, 3) of the straight blank's coordinates lie inside it, (n,)."""
+    (x, y, z), section = blank.T, bar.blank.section
+    sides = [x, bar.blank.length - x, section.width / 2.0 - np.abs(y), section.thickness / 2.0 - np.abs(z)]
+    return np.asarray(np.minimum.reduce(sides))
+
+
+def _rough_depths(bar: FlatBar, points: Floats) -> tuple[Floats, float]:
+    """Return depths (n,) in the straight bar that touches a formed one at the nearest sample, and their error, mm.
+
+    Points farther from the curve than the section reaches get minus infinity. Between two samples the bar turns by the
+    angle between their frames; half of it acts over the reach at most, so that the whole of it is on the safe side.
+    """
+    stations, section = bar.curve.stations, bar.blank.section
+    away, nearest = cKDTree(bar.curve.points).query(points)
+    reach = float(np.hypot(np.diff(stations).max() / 2.0, np.hypot(section.width, section.thickness) / 2.0))
+    centre, *axes = plank_axes(bar, stations)
+    turn = max(float(np.linalg.norm(np.diff(axis, axis=0), axis=1).max()) for axis in axes)
     depths = np.full(len(points), -np.inf)
+    near = np.flatnonzero(away <= reach)
+    at = np.asarray(nearest)[near]
+    gap = points[near] - centre[at]
+    x, y, z = (dot(gap, axis[at]) for axis in axes)
+    depths[near] = _blank_depths(bar, np.column_stack([stations[at] + x, y, z]))
+    return depths, reach * turn
+
+
+def _bar_depths(bar: FlatBar, points: Floats) -> Floats:
+    """Return depths in a formed bar; those of points that are surely outside are rough."""
+    depths, error = _rough_depths(bar, points)
+    near = depths > -error
     if near.any():
-        x, y, z = blank_points(bar, points[near]).T
-        sides = [x, bar.blank.length - x, half_width - np.abs(y), half_thickness - np.abs(z)]
-        depths[near] = np.minimum.reduce(sides)
+        depths[near] = _blank_depths(bar, blank_points(bar, points[near]))
     return depths
 
 

@@ -1,7 +1,7 @@
 """Closed triangle meshes of the parts, for exchange, pictures and clash tests."""
 
 import math
-from collections.abc import Iterable
+from functools import lru_cache
 
 import numpy as np
 
@@ -32,6 +32,8 @@ from aag_cad.parts.triangles import Mesh, joined, prism, regular_polygon, round_
 from aag_cad.units import Floats
 
 MESH_SPACING = 120.0
+# Bolts and rods come in a few sizes, thousands of times.
+_SIZES = 64
 
 
 def plank_mesh(plank: FlatBar, spacing: float = MESH_SPACING) -> Mesh:
@@ -42,7 +44,8 @@ def plank_mesh(plank: FlatBar, spacing: float = MESH_SPACING) -> Mesh:
     return tube(formed_points(plank, np.column_stack([stations, np.tile(corners, (count, 1))])).reshape(count, 4, 3))
 
 
-def _threaded_mesh(pieces: Iterable[BoltPiece]) -> Mesh:
+@lru_cache(maxsize=_SIZES)
+def _threaded_mesh(pieces: tuple[BoltPiece, ...]) -> Mesh:
     return joined(
         [prism(regular_polygon(6, p.size) if p.hexagonal else round_polygon(p.size), p.low, p.high) for p in pieces]
     )

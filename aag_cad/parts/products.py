@@ -1,7 +1,6 @@
 """Which parts are the same product: equal in shape and make, whatever their marks and places."""
 
 import hashlib
-from dataclasses import fields
 
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.parts.marks import parse_mark
@@ -39,7 +38,7 @@ def _feed(value: object) -> str:
     if isinstance(value, tuple):
         return "(" + ",".join(_feed(item) for item in value) + ")"
     if hasattr(value, "__dataclass_fields__"):
-        inner = (f.name for f in fields(value) if f.name not in _OWN_TO_THE_PIECE)  # type: ignore[arg-type]
+        inner = (name for name in value.__dataclass_fields__ if name not in _OWN_TO_THE_PIECE)
         return type(value).__name__ + "".join(f";{name}={_feed(getattr(value, name))}" for name in inner)
     return f"{round(value, 6) + 0.0:.6f}" if isinstance(value, float) else repr(value)
 

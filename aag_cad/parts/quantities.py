@@ -1,6 +1,7 @@
 """Volumes, masses and the strain of the parts: the numbers of the part lists."""
 
 import math
+from functools import lru_cache
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -32,6 +33,8 @@ STEEL_DENSITY = 7850.0
 STRAIGHT = 1e-9
 _STATIONS_PER_SAMPLE = 8
 _CHORDS = 64
+# The studs of a shell have few kinds of holes, and many lists ask for their masses.
+_HOLES = 1024
 
 Material: TypeAlias = Literal["timber", "steel", "aluminium", "polycarbonate", "concrete"]
 
@@ -131,6 +134,7 @@ def section_area(part: Part) -> float:
             return width * thickness
 
 
+@lru_cache(maxsize=_HOLES)
 def _cross_hole_volume(across_flats: float, angle: float, diameter: float) -> float:
     """Return what a hole through the axis of a hexagonal prism takes away: chords weighted by the hole's depth, mm3.
 

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -24,7 +25,8 @@ _SEARCH = 129
 _ALONG_CUT = 33
 _NEWTON_STEPS = 12
 _STILL = 1e-8
-_FAR = 15.0
+# Strips alike in all shells are unrolled once; a vault has a dozen or two, every list asks for their sizes.
+_REMEMBERED = 128
 
 # How far points (n, 3) lie inside a limit, mm, (n,).
 Limit: TypeAlias = Callable[[Floats], Floats]
@@ -117,6 +119,11 @@ def _aligned(flat: BSpline, strip: Strip) -> BSpline:
 
 def sheet_of(strip: Strip) -> Sheet:
     """Return a strip as functions of the ruling's parameter and the fraction along the ruling."""
+    return _sheet(replace(strip, mark=""))
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _sheet(strip: Strip) -> Sheet:
     count = len(strip.left.stations)
     u = np.linspace(0.0, 1.0, count)
     edges = make_interp_spline(u, np.stack([strip.left.points, strip.right.points], axis=1), k=_DEGREE)
@@ -246,6 +253,11 @@ def _sagitta(edge: Floats, inward: float) -> float:
 
 def flat_pattern(strip: Strip) -> FlatPattern:
     """Return the unrolled strip with its long concave edges (paper section 3.2, Fig. 8e)."""
+    return _pattern(replace(strip, mark=""))
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _pattern(strip: Strip) -> FlatPattern:
     sheet = sheet_of(strip)
     left, right = (_trimmed_edge(sheet, strip, side) for side in (0, 1))
     outline = np.concatenate([left, sheet.upper[1:], right[-2::-1], sheet.lower[-2:0:-1]])
@@ -303,10 +315,18 @@ def strip_depth(strip: Strip, points: Floats) -> Floats:
     nearest = np.argmin((middles**2).sum(axis=1) - 2.0 * points @ middles.T, axis=1)
     height = dot(points - strip.left.points[nearest], strip.left.normals[nearest])
     depth = strip.thickness / 2.0 - np.abs(height)
-    near = depth > -_FAR
+    near = depth > -_rise(strip)
     if near.any():
         depth[near] = _near_depth(sheet, points[near], nearest[near] / (len(middles) - 1.0))
     return depth
+
+
+def _rise(strip: Strip) -> float:
+    """Return what the sheet rises at most over the tangent plane of a ruling on the way to the next one, mm."""
+    return max(
+        float((np.linalg.norm(np.diff(edge.normals, axis=0), axis=1) * np.diff(edge.stations)).max() / 2.0)
+        for edge in (strip.left, strip.right)
+    )
 
 
 def _near_depth(sheet: Sheet, points: Floats, guess: Floats) -> Floats:
@@ -327,11 +347,10 @@ def _near_depth(sheet: Sheet, points: Floats, guess: Floats) -> Floats:
     left, right, normal = np.moveaxis(frame(u), 1, 0)
     v = dot(points - left, right - left) / dot(right - left, right - left)
     depth = sheet.thickness / 2.0 - np.abs(dot(points - left, unit(normal)))
-    flat = sheet.flattened(u, v)
+    ends, slope = np.asarray(sheet.flat(u)), np.asarray(sheet.flat(u, nu=1))
+    flat = ends[:, 0] + v[:, None] * (ends[:, 1] - ends[:, 0])
     for side, sign in ((0, 1.0), (1, -1.0)):
-        along = unit(np.asarray(sheet.flat(u, nu=1))[:, side])
-        gap = flat - np.asarray(sheet.flat(u))[:, side]
-        depth = np.minimum(depth, sign * _flat_cross(along, gap))
+        depth = np.minimum(depth, sign * _flat_cross(unit(slope[:, side]), flat - ends[:, side]))
     for point, inward in _inside_cuts(sheet):
         depth = np.minimum(depth, (flat - point) @ inward)
     # A point past the last ruling stays ahead of it, and is outside by that much at least.

@@ -91,7 +91,7 @@ def test_a_brace_is_told_with_its_ends_and_length(cut: Segmentation) -> None:
 def test_a_segment_that_does_not_fit_says_by_how_much(single: Gridshell) -> None:
     whole = segments(single, replace(LORRY, crane=10.0))
     card = segment_cards(whole, "de")[0]
-    assert card["title"] == "Schale S1"
+    assert card["title"] == "Schale S1 am Stück"
     told = str(card["facts"])
     assert "mm zu hoch" in told
     assert "kg zu schwer" in told

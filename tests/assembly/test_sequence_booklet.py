@@ -1,5 +1,6 @@
 """The booklets of putting together and taking down: one card a step, read back with pypdf."""
 
+import math
 import re
 from dataclasses import replace
 from io import BytesIO
@@ -9,14 +10,19 @@ import numpy as np
 import pytest
 from pypdf import PdfReader
 
+from aag_cad.design import Design
 from aag_cad.errors import FileError
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Part, all_parts
 from assembly.booklet import common_of, disassembly_booklet, sequence_booklet
 from assembly.cards import part_rows, step_card, step_table, totals
+from assembly.durations import step_minutes
 from assembly.plan import piece_weights, plan_of
 from assembly.planned import Planned
 from assembly.printout import booklet_pdf, sequence_pdf, write_sequence
+from assembly.schedule import schedule_of
+from assembly.segment_search import Limits
+from assembly.segments import segments
 from assembly.steps import Plan, Step
 
 # Cover, how a shell is made, map of marks, map of blocks, list of steps, laying plan, its coordinates, schedule.
@@ -106,7 +112,7 @@ def test_the_list_of_steps_names_every_step(plan: Plan, pages: list[str]) -> Non
 def test_locking_and_segments_close_the_booklet(planned: Planned, pages: list[str]) -> None:
     """The three shells are alike: one locking page for all, and a sheet for each with its own centre of gravity."""
     last = pages[FIRST_PAGES + len(planned.plan.steps) :]
-    assert last[0].startswith("Locking: shell S1, S2, S3")
+    assert last[0].startswith("Locking: S1, S2, S3")
     assert len(last) == 1 + len(planned.segmentation.segments)
     for segment, page in zip(planned.segmentation.segments, last[1:], strict=True):
         assert segment.name in page
@@ -140,6 +146,47 @@ def test_pages_are_a4_one_a_step_for_a_single_shell_too(alone: Planned, one_shel
         # 210 x 297 mm in points, to the rounding of the writer.
         assert size == pytest.approx([841.89, 595.28] if i in ACROSS else [595.28, 841.89], abs=0.01)
         assert (float(page.mediabox.width) > float(page.mediabox.height)) == (i in ACROSS)
+
+
+def test_the_laying_plan_is_printed_to_the_scale_that_it_states(alone: Planned, one_shell: Gridshell) -> None:
+    """The numbers 0 to 3 of its bar stand a metre apart at that scale, measured in the file on the page's paper."""
+    page = PdfReader(BytesIO(sequence_pdf(alone, one_shell))).pages[ACROSS[1]]
+    rows: dict[float, list[tuple[float, str]]] = {}
+
+    def collect(text: str, cm: list[float], *_: object) -> None:
+        if text.strip():
+            rows.setdefault(round(cm[5], 1), []).append((cm[4], text.strip()))
+
+    page.extract_text(visitor_text=collect)
+    scale = re.search(r"1 : (\d+)", " ".join(page.extract_text().split()))
+    assert scale is not None
+    bars = [row for row in rows.values() if [text for _, text in sorted(row)] == ["0", "1", "2", "3"]]
+    assert bars
+    points_a_metre = 1000.0 / int(scale[1]) * 72.0 / 25.4
+    for bar in bars:
+        steps = np.diff([x for x, _ in sorted(bar)])
+        # A thousandth: what the writer rounds coordinates to.
+        assert steps == pytest.approx([points_a_metre] * 3, rel=1e-3)
+
+
+def test_every_card_of_a_shell_in_segments_is_one_page(alone: Planned, one_shell: Gridshell, design: Design) -> None:
+    """For the lorry of 12 x 2.4 x 2.6 m it is cut in three: what is opened and braced is long to tell."""
+    cut = segments(one_shell, Limits(12000.0, 2400.0, 2600.0, math.inf, math.inf))
+    plan = plan_of(one_shell, 4, 25.0, locking=alone.locking, segmentation=cut)
+    when = schedule_of(plan, step_minutes(plan, one_shell, design.crew.minutes), 4, design.crew.hours_per_day)
+    reader = PdfReader(BytesIO(sequence_pdf(replace(alone, plan=plan, schedule=when, segmentation=cut), one_shell)))
+    pages = [" ".join(page.extract_text().split()) for page in reader.pages]
+    assert len(cut.segments) == 3
+    assert len(pages) == FIRST_PAGES + len(plan.steps) + 1 + len(cut.segments)
+    cards = pages[FIRST_PAGES : FIRST_PAGES + len(plan.steps)]
+    titles = {step.id: step.title for step in plan.steps}
+    assert [s.number for s, page in zip(plan.steps, cards, strict=True) if not says_all(s, titles, page)] == []
+    for segment in cut.segments:
+        (card,) = (card for card in cards if f"Stand segment {segment.name}" in card.split("step site")[0])
+        heaviest = re.search(rf"Heaviest piece {re.escape(segment.name)}: ([\d.]+) kg", card)
+        assert heaviest is not None
+        # From 100 kg on the card gives whole kilograms.
+        assert float(heaviest[1]) == pytest.approx(segment.mass, abs=0.5)
 
 
 def test_the_same_plan_gives_the_same_bytes_without_a_date(alone: Planned, one_shell: Gridshell) -> None:

@@ -12,11 +12,13 @@ from aag_cad.design import Design, load_design
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.pipeline import gridshell_of
 from assembly.check import check_plan
+from assembly.disassembly import disassembly_of
+from assembly.disassembly_check import check_disassembly
 from assembly.durations import step_minutes
 from assembly.lifting import margin_inside
 from assembly.locking import LockingOrder, locking_orders
 from assembly.parting import divide_works
-from assembly.plan import plan_of
+from assembly.plan import lifted, piece_weights, plan_of
 from assembly.schedule import schedule_of
 from assembly.seams import seams, standing_order
 from assembly.segment_search import Limits
@@ -93,11 +95,11 @@ def test_every_splice_is_made_once_taken_out_once_and_put_in_once(plan: Plan, cu
         shell, beam, joint = splice.member[:2], splice.member[3:], splice.joint[3:]
         own = [s for s in plan.steps if shell in (s.shell, *s.assemblies)]
         told = Counter(
-            s.phase for s in own for extra in s.extras if re.search(rf"\b{beam}\b", extra) and f" {joint} " in extra
+            s.phase for s in own for extra in s.extras if re.search(rf"\b{beam} at {joint}\b", extra)
         )
         assert told == {"prefabricate": 1, "divide": 1, "splice": 1}
         (made,) = (s for s in own if s.phase == "prefabricate" and splice.cuts[0].plank in s.marks)
-        assert any(f"{beam} is cut along {splice.line[3:]}" in extra for extra in made.extras)
+        assert any(f"cut along {splice.line[3:]}" in x and f"{beam} at {joint}" in x for x in made.extras)
 
 
 def test_bracing_goes_on_before_the_journey_and_comes_off_when_a_segment_is_joined(
@@ -268,3 +270,36 @@ def test_a_geodesic_may_be_slid_in_after_the_beams_above_it(plan: Plan, pair: Gr
     assert check_plan(slid, pair, cut) == []
     early = _changed(slid, "S1.slide.1", predecessors=("S1.lay.1",))
     assert any("S1-G-05 in step S1.slide.1 passes" in problem for problem in check_plan(early, pair, cut))
+
+
+def test_a_segment_is_carried_and_not_its_shell(plan: Plan, pair: Gridshell, cut: Segmentation) -> None:
+    """A segment of 93 kg is for four people of 25 kg; the shell of 319 kg would need lifting gear."""
+    weights = piece_weights(pair, cut)
+    for segment in cut.segments:
+        stand = step(plan, f"site.stand.{segment.name}")
+        assert lifted(stand, weights) == (segment.name,)
+        assert weights[segment.name] == (segment.mass, 0.0)
+        assert not any("stiff shell" in line for line in stand.instructions)
+    assert lifted(step(plan, "S1.divide"), weights) == ("S1.1", "S1.2", "S1.3")
+    assert not any(lifted(s, weights) for s in plan.steps if s.phase == "splice")
+    assert sum(weights[f"S1.{i}"][0] for i in (1, 2, 3)) < weights["S1"][0]
+
+
+def test_splices_come_out_with_their_beams_and_edge_planks_when_the_gridshell_is_taken_down(
+    pair: Gridshell, cut: Segmentation
+) -> None:
+    down = disassembly_of(pair, 4, 25.0, segmentation=cut)
+    assert check_disassembly(down, pair) == []
+    for splice in cut.splices:
+        member = splice.member[3:]
+        phases = [
+            s.phase
+            for s in down.steps
+            for extra in s.extras
+            if set(s.marks) & {at.plank for at in splice.cuts} and re.search(rf": {member}\b", extra)
+            if f" {splice.line[3:]}" in extra
+        ]
+        assert phases == ["unbolt" if splice.kind == "block" else "pull edge planks"]
+    lifts = [s for s in down.steps if s.phase == "lift off"]
+    assert all("S1.1, S1.2, S1.3" in s.extras[0] for s in lifts[:1])
+    assert not any(s.extras for s in disassembly_of(pair, 4, 25.0).steps)

@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from aag_cad.design import design_text, parse_design
+from aag_cad.design import design_text, load_design, parse_design
 from aag_cad.pipeline import gridshell_of
 from aag_cad.units import Vector
 from assembly.flat import FlatOrder, flat_order_of
 from assembly.graph import assembly_graph
 from assembly.graph_plan import check_graph_plan, graph_plan
 from assembly.interlacing import interlacing
+from assembly.locking import locking_orders
+from assembly.planned import limits_of, planned_of
 
 SPACING = 500.0
 
@@ -172,3 +174,17 @@ def test_plan_and_check_of_a_whole_graph(benchmark: BenchmarkFixture, n: int) ->
     graph = trihex_graph(n)
     plan = benchmark.pedantic(graph_plan, (graph, 6, 25.0), rounds=1)
     assert check_graph_plan(plan, graph, 6) == []
+
+
+def test_all_plans_of_the_vault(benchmark: BenchmarkFixture) -> None:
+    """Flat order, locking, segments, plans up and down with their schedules: what ``aag plan vault`` works out."""
+    design = load_design("vault")
+    gridshell, limits = gridshell_of(design), limits_of(design.transport)
+    planned = benchmark.pedantic(planned_of, args=(gridshell, design.crew, limits), rounds=1)
+    assert len(planned.segmentation.segments) == 3
+
+
+def test_the_locking_order_of_the_vault(benchmark: BenchmarkFixture) -> None:
+    """Nine groups of planks, each state an eigenvalue problem; shells alike are worked out once."""
+    orders = benchmark.pedantic(locking_orders, args=(gridshell_of(load_design("vault")),), rounds=1)
+    assert len(orders) == 3
