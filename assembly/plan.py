@@ -18,6 +18,7 @@ from assembly.locking import LockingOrder
 from assembly.parting import divide_works, made_with_splices
 from assembly.process import Work, shell_works
 from assembly.seams import segments_of
+from assembly.segment_stiffness import stiffness_findings
 from assembly.segments import Segmentation, segment_findings
 from assembly.site import site_works
 from assembly.steps import Plan, Step
@@ -162,6 +163,7 @@ def plan_of(
     findings = (
         *lifting_findings(carried, crew, language),
         *(segment_findings(segmentation) if segmentation else ()),
+        *(stiffness_findings(gridshell, segmentation, language=language) if segmentation else ()),
     )
     return Plan(gridshell.name, tuple(steps), language, findings)
 

@@ -29,6 +29,7 @@ from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.parts.products import product_key
 from aag_cad.units import Floats, Ints, Vector
+from assembly.language import Language, say
 from assembly.lifting import lifting_points, standing_props
 from assembly.locking import SAG_LIMIT, SOFT, soft_mode_count
 from assembly.locking_model import GRAVITY
@@ -325,25 +326,32 @@ def segments_stiffness(gridshell: Gridshell, segmentation: Segmentation) -> tupl
     return tuple(found)
 
 
-def stiffness_finding(stiffness: SegmentStiffness, limit: float = SAG_LIMIT) -> Finding | None:
+def stiffness_finding(
+    stiffness: SegmentStiffness, limit: float = SAG_LIMIT, language: Language = "en"
+) -> Finding | None:
     """Return that a segment sags more than a limit (mm) with its braces (AAG965, a warning), None if it does not."""
     if stiffness.displacement <= limit:
         return None
+
+    def words(key: str, **figures: object) -> str:
+        return say(language, f"segments.stiffness.{key}", **figures)
+
     hold = max(stiffness.holds, key=lambda hold: hold.braced.displacement)
-    at, where = hold.braced.at, "hung" if hold.way == "hung" else "on its props"
-    what, most = f"sag with its braces, {where},", f"most at {at}: "
-    more = "sling it there as well, under a spreader" if hold.way == "hung" else "put a prop there as well"
-    if math.isinf(stiffness.displacement):
-        what, most, more = f"free to move with its braces, {where}: sag", f"{at} moves: ", "hold it in every direction"
+    free, held = math.isinf(stiffness.displacement), words(hold.way)
+    remedy = words("hold" if free else f"hold_{hold.way}", at=hold.braced.at)
     if hold.buckled:
-        more += f"; braces {', '.join(str(i + 1) for i in hold.buckled)} buckle: make them of more planks"
-    remedy = f"{most}{more}; or cut the shell into wider segments"
+        remedy += words("buckled", braces=", ".join(str(i + 1) for i in hold.buckled))
+    remedy += words("wider")
+    if free:
+        return Finding("AAG965", "warning", stiffness.segment, words("free", held=held), 1.0, 0.0, "", remedy)
+    what = words("sag", held=held)
     return Finding("AAG965", "warning", stiffness.segment, what, stiffness.displacement, limit, "mm", remedy)
 
 
 def stiffness_findings(
-    gridshell: Gridshell, segmentation: Segmentation, limit: float = SAG_LIMIT
+    gridshell: Gridshell, segmentation: Segmentation, limit: float = SAG_LIMIT, language: Language = "en"
 ) -> tuple[Finding, ...]:
     """Return which segments of cut shells sag more than a limit (mm) with their braces: AAG965."""
-    found = (stiffness_finding(stiffness, limit) for stiffness in segments_stiffness(gridshell, segmentation))
+    every = segments_stiffness(gridshell, segmentation)
+    found = (stiffness_finding(stiffness, limit, language) for stiffness in every)
     return tuple(finding for finding in found if finding is not None)

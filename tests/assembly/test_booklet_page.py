@@ -10,10 +10,11 @@ import pytest
 from aag_cad.design import Design
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.resources import template
-from assembly.booklet import Booklet, common_of, sequence_booklet
+from assembly.booklet import Booklet, common_of, disassembly_booklet, sequence_booklet
 from assembly.graph_file import read_graph
 from assembly.graph_page import graph_html
 from assembly.graph_plan import graph_durations, graph_plan
+from assembly.interlacing import interlacing
 from assembly.page import page_html, sequence_html
 from assembly.planned import Planned
 from assembly.schedule import schedule_of
@@ -161,6 +162,13 @@ def test_the_german_page_is_german_and_the_same_each_time(german: Planned, grids
     assert page == sequence_html(german, gridshell)
 
 
+def test_taking_down_has_a_page_of_its_own(planned: Planned, gridshell: Gridshell) -> None:
+    booklet = disassembly_booklet(planned, common_of(gridshell, "en"))
+    reader = read(page_html(booklet, planned.down, gridshell))
+    assert_sound(reader)
+    assert [step.number for step in planned.down.steps if f"step-{step.number}-done" not in reader.boxes] == []
+
+
 def test_a_picture_that_is_no_svg_is_refused() -> None:
     with pytest.raises(ValueError, match="not an SVG"):
         shared_pictures({"a": "<html></html>"}, ["a"])
@@ -178,3 +186,6 @@ def test_a_plain_graph_has_a_page_too(name: str, design: Design) -> None:
     assert [finding.mark for finding in plan.findings if finding.mark not in page] == []
     slid = [step for step in plan.steps if step.phase == "slide"]
     assert all(step.title in page for step in slid)
+    passed = [joint for slide in interlacing(graph, later=()).slides for joint in slide.crossings]
+    assert len(re.findall(r'<circle [^>]*r="11"/>', page)) == len(passed)
+    assert bool(passed) == bool(slid)

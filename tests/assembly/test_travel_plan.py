@@ -94,9 +94,7 @@ def test_every_splice_is_made_once_taken_out_once_and_put_in_once(plan: Plan, cu
     for splice in (splice for splice in cut.splices if splice.kind == "block"):
         shell, beam, joint = splice.member[:2], splice.member[3:], splice.joint[3:]
         own = [s for s in plan.steps if shell in (s.shell, *s.assemblies)]
-        told = Counter(
-            s.phase for s in own for extra in s.extras if re.search(rf"\b{beam} at {joint}\b", extra)
-        )
+        told = Counter(s.phase for s in own for extra in s.extras if re.search(rf"\b{beam} at {joint}\b", extra))
         assert told == {"prefabricate": 1, "divide": 1, "splice": 1}
         (made,) = (s for s in own if s.phase == "prefabricate" and splice.cuts[0].plank in s.marks)
         assert any(f"cut along {splice.line[3:]}" in x and f"{beam} at {joint}" in x for x in made.extras)
