@@ -18,8 +18,8 @@ from assembly.segments import Segmentation
 
 # The joints on each map: those that a crew looks for on the whole shell, and the many blocks on one of their own.
 _MAPS = (("N", "F", "R"), ("K",))
-# The first stands upright above the legend; tenths of a mm, so that its numbers are printed as large as they are drawn.
-_MAP_SIZES = ((1800.0, 1500.0), MAP_SIZE)
+# The first stands above the legend on an upright page, at nine tenths of this size (tenths of a mm).
+_MAP_SIZES = ((2000.0, 1660.0), MAP_SIZE)
 
 Made = tuple[dict[str, Any], dict[str, str]]
 
