@@ -2,7 +2,6 @@
 
 import math
 import tomllib
-from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -20,8 +19,8 @@ from aag_cad.design_sections import (
     SplineSurface,
     SurfaceSection,
 )
-from aag_cad.errors import DesignError, FileError
-from aag_cad.resources import template
+from aag_cad.errors import DesignError
+from aag_cad.resources import shipped_names, shipped_text
 
 # A hexagon turned by 30 degrees is wider by 1 / cos 30: between 60 degree nodes and that, a stud has to be thinner.
 _LEAST_FLATS = math.cos(math.radians(30.0))
@@ -311,20 +310,12 @@ def parse_design(text: str, source: str = "design") -> Design:
 
 def shipped_designs() -> list[str]:
     """Return the names of the shipped designs, sorted."""
-    return sorted(path.stem for path in template("designs").glob("*.toml"))
+    return shipped_names("designs", ".toml")
 
 
 def design_text(name_or_path: str) -> tuple[str, str]:
     """Return (text, source) of a shipped design or of a file; FileError if neither can be read."""
-    shipped = name_or_path in shipped_designs()
-    path = template("designs", f"{name_or_path}.toml") if shipped else Path(name_or_path)
-    try:
-        return path.read_text(encoding="utf-8-sig"), name_or_path
-    except FileNotFoundError as error:
-        names = ", ".join(shipped_designs())
-        raise FileError(f"{name_or_path}: no such design file, and not a shipped design ({names})") from error
-    except (OSError, ValueError) as error:
-        raise FileError(f"{name_or_path}: cannot be read as a text file: {error}") from error
+    return shipped_text("designs", ".toml", name_or_path, "design"), name_or_path
 
 
 def load_design(name_or_path: str) -> Design:

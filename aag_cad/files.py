@@ -66,6 +66,14 @@ def publishing(folder: Path) -> Iterator[Path]:
                 raise FileError(f"{target}: cannot be written: {error.strerror}") from error
 
 
+def read_text(path: str | os.PathLike[str]) -> str:
+    """Return the text of a file in UTF-8, a byte order mark left out; FileError if it cannot be read."""
+    try:
+        return Path(path).read_text(encoding="utf-8-sig")
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path}: cannot be read as a text file: {error}") from error
+
+
 def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
     """Write bytes to a file as a whole; FileError if it cannot be written."""
     with replacing(path) as draft:

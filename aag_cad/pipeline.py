@@ -18,9 +18,9 @@ from aag_cad.design_sections import (
     Optimise,
     SplineSurface,
 )
-from aag_cad.errors import DesignError, FileError
+from aag_cad.errors import DesignError
 from aag_cad.export.ifc_options import IfcOptions, require_known
-from aag_cad.files import publishing, sizes_below
+from aag_cad.files import publishing, read_text, sizes_below
 from aag_cad.findings import Finding, worst_first
 from aag_cad.geometry.profiles import ArcProfile, CrpcProfile, HyperboloidProfile, Profile, SplineProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
@@ -116,11 +116,7 @@ def optimised_design(design: Design, report: IterationReport = lambda iteration:
 
 def optimised_mesh(path: str, goals: Goals, report: IterationReport = lambda iteration: None) -> Optimised:
     """Return the optimised web of a quad mesh in an OBJ file; FileError if it cannot be read or is no grid."""
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        raise FileError(f"{path}: cannot be read as a text file: {error}") from error
-    return optimise(read_web_obj(text, path), goals, report)
+    return optimise(read_web_obj(read_text(path), path), goals, report)
 
 
 def worked_surface(design: Design) -> tuple[Chart, Web]:
@@ -154,11 +150,7 @@ def write_optimised(found: Optimised, goals: Goals, folder: Path) -> dict[str, i
 
 def curves_from(path: str) -> CurveNetwork:
     """Return the curve network in a JSON file of polylines; FileError or NetworkError where it does not fit."""
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        raise FileError(f"{path}: cannot be read as a text file: {error}") from error
-    return read_polylines(text, path)
+    return read_polylines(read_text(path), path)
 
 
 def model_of(design: Design, report: Report = lambda stage: None, given_curves: CurveNetwork | None = None) -> Model:

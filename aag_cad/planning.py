@@ -12,11 +12,11 @@ from aag_cad.design import load_design
 from aag_cad.design_making import Crew
 from aag_cad.errors import DesignError, FileError
 from aag_cad.export.planning import PLAN_WRITERS, Planning, write_graph_groups, write_graph_plan
-from aag_cad.files import publishing, sizes_below
+from aag_cad.files import publishing, read_text, sizes_below
 from aag_cad.findings import Finding, worst_first
 from aag_cad.parts.model import Gridshell
 from aag_cad.parts.store import read_gridshell
-from aag_cad.pipeline import gridshell_of
+from aag_cad.pipeline import Report, gridshell_of
 from assembly.explain import explanation
 from assembly.graph import assembly_graph
 from assembly.graph_file import graph_text, read_graph, shipped_graphs
@@ -28,10 +28,9 @@ from assembly.planned import NO_LIMITS, limits_of, planned_of
 from assembly.schedule import Schedule, schedule_of
 from assembly.segment_search import Limits
 
-Report = Callable[[str], None]
 # For what names no crew: four people who lift 25 kg each (EN 1005-2, the mass that most adults may lift).
 FOUR = Crew.model_validate({"people": 4, "lift_limit": 25.0})
-STAGES = len(("read", "plan", *PLAN_WRITERS))
+STAGES = 2 + len(PLAN_WRITERS)
 
 
 @dataclass(frozen=True)
@@ -61,13 +60,6 @@ class Result:
         return worst_first(self.plan.findings)
 
 
-def _read_text(path: str) -> str:
-    try:
-        return Path(path).read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        raise FileError(f"{path}: cannot be read as a text file: {error}") from error
-
-
 def _keys(text: str, path: str) -> set[str]:
     try:
         data: Any = json.loads(text)
@@ -83,7 +75,7 @@ def read_source(source: str, people: int | None = None, limits: Limits | None = 
     PlanError where the source cannot be read.
     """
     if source in shipped_graphs() or source.lower().endswith(".json"):
-        text = graph_text(source) if source in shipped_graphs() else _read_text(source)
+        text = graph_text(source) if source in shipped_graphs() else read_text(source)
         crew, keys = _crew_with(FOUR, people), _keys(text, source)
         if "shells" in keys:
             gridshell = read_gridshell(text)

@@ -2,15 +2,13 @@
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
 from typing import Any, TypeAlias
 from xml.etree.ElementTree import ParseError
 
 import networkx as nx
 
-from aag_cad.errors import FileError
 from aag_cad.parts.store import read_gridshell
-from aag_cad.resources import template
+from aag_cad.resources import shipped_names, shipped_text
 from assembly.errors import PlanError
 from assembly.graph import assembly_graph
 from assembly.graph_problems import GraphProblem, graph_problems, refuse
@@ -241,17 +239,9 @@ def graph_of_gridshell_json(text: str) -> "nx.MultiGraph[str]":
 
 def shipped_graphs() -> list[str]:
     """Return the names of the shipped graphs, sorted."""
-    return sorted(path.stem for path in template("graphs").glob("*.json"))
+    return shipped_names("graphs", ".json")
 
 
 def graph_text(name_or_path: str) -> str:
     """Return the text of a shipped graph or of a file; FileError if neither can be read."""
-    shipped = name_or_path in shipped_graphs()
-    path = template("graphs", f"{name_or_path}.json") if shipped else Path(name_or_path)
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError as error:
-        names = ", ".join(shipped_graphs())
-        raise FileError(f"{name_or_path}: no such graph file, and not a shipped graph ({names})") from error
-    except (OSError, ValueError) as error:
-        raise FileError(f"{name_or_path}: cannot be read as a text file: {error}") from error
+    return shipped_text("graphs", ".json", name_or_path, "graph")

@@ -1,12 +1,10 @@
 """A booklet as one HTML file for telephones: pictures in the page, check boxes that stay, a search for marks."""
 
-import os
 import re
 from collections.abc import Iterator, Mapping
 from html import escape
 from typing import Any
 
-from aag_cad.files import write_text
 from aag_cad.parts.model import Gridshell
 from assembly.booklet import Booklet, common_of, sequence_booklet
 from assembly.graph import joint_of
@@ -16,7 +14,7 @@ from assembly.planned import Planned
 from assembly.shared_pictures import shared_pictures
 from assembly.steps import Phase, Plan
 
-__all__ = ["graph_html", "handled_marks", "page_html", "sequence_html", "write_page"]
+__all__ = ["graph_html", "handled_marks", "page_html", "sequence_html"]
 
 # The phases whose fasteners hold the planks at their joints; in the others they hold blocks, studs or the cover.
 _FASTENED: tuple[Phase, ...] = (
@@ -114,8 +112,3 @@ def page_html(booklet: Booklet, plan: Plan, gridshell: Gridshell) -> str:
 def sequence_html(planned: Planned, gridshell: Gridshell) -> str:
     """Return the booklet of putting together as one HTML page without links to anything else; same plan, same text."""
     return page_html(sequence_booklet(planned, common_of(gridshell, planned.plan.language)), planned.plan, gridshell)
-
-
-def write_page(planned: Planned, gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
-    """Write the booklet as an HTML file; FileError if it cannot be written, and then nothing is left behind."""
-    write_text(path, sequence_html(planned, gridshell))

@@ -29,6 +29,18 @@ def _fasteners(language: Language, marks: Sequence[str]) -> str:
     return ", ".join(say(language, f"site.count.{kind}", count=count) for kind, count in counted)
 
 
+def _figures(splice: Splice) -> dict[str, object]:
+    """Return what every sentence about a splice may say: marks without their shell, length, bolts."""
+    return {
+        "line": short_mark(splice.line),
+        "beam": short_mark(splice.member),
+        "joint": short_mark(splice.joint) if splice.joint else "",
+        "length": splice.length,
+        "bolts": splice.bolts,
+        "diameter": splice.diameter,
+    }
+
+
 def seam_extras(language: Language, seam: Seam, chapter: str) -> Iterator[str]:
     """Yield what is taken out at a seam (``divide``) or put in again (``splice``): splices with bolts, fasteners."""
     for splice in seam.splices:
@@ -36,12 +48,7 @@ def seam_extras(language: Language, seam: Seam, chapter: str) -> Iterator[str]:
         yield say(
             language,
             f"site.{chapter}.{splice.kind}",
-            line=short_mark(splice.line),
-            beam=short_mark(splice.member),
-            joint=short_mark(splice.joint) if splice.joint else "",
-            bolts=splice.bolts,
-            diameter=splice.diameter,
-            length=splice.length,
+            **_figures(splice),
             side=say(language, f"site.{chapter}.{side}"),
         )
     if seam.fasteners:
@@ -71,14 +78,9 @@ def _spliced(language: Language, splice: Splice, chapter: str) -> str:
     return say(
         language,
         f"site.{chapter}.{splice.kind}",
-        beam=short_mark(splice.member),
-        line=short_mark(splice.line),
-        joint=short_mark(splice.joint) if splice.joint else "",
+        **_figures(splice),
         left=stations[0],
         right=stations[-1],
-        length=splice.length,
-        bolts=splice.bolts,
-        diameter=splice.diameter,
     )
 
 

@@ -48,11 +48,6 @@ def write_sequence(planned: Planned, gridshell: Gridshell, path: str | os.PathLi
     write_bytes(path, sequence_pdf(planned, gridshell))
 
 
-def write_disassembly(planned: Planned, gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
-    """Write the booklet of taking down as PDF; FileError if it cannot be written, and then nothing is left behind."""
-    write_bytes(path, disassembly_pdf(planned, gridshell))
-
-
 def write_booklets(planned: Planned, gridshell: Gridshell, folder: Path) -> None:
     """Write both booklets to a folder, each as PDF and as HTML page: what they share is made only once.
 

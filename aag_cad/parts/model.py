@@ -5,7 +5,7 @@ blank, x along it from its start, y across its width and z through its thickness
 ``curve(x) + y * width_direction(x) + z * thickness_direction(x)``: see ``aag_cad.parts.forming``.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from aag_cad.geometry.framed import FramedCurve
@@ -13,14 +13,13 @@ from aag_cad.network.model import Family
 from aag_cad.units import Vector
 
 SCHEMA_VERSION = 2
-
 JointKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "footing", "ridge", "blade", "cover"]
 HoleUse: TypeAlias = Literal["bolt", "screw"]
 
 
 @dataclass(frozen=True)
 class Frame:
-    """A right-handed local frame; the axes are unit vectors."""
+    """A right-handed local frame; the axes are unit vectors. UNMOVED is that of what is given in vault coordinates."""
 
     origin: Vector
     x: Vector
@@ -28,7 +27,6 @@ class Frame:
     z: Vector
 
 
-# The frame of what is given in vault coordinates as it is.
 UNMOVED = Frame((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
@@ -370,7 +368,7 @@ class Gridshell:
     shells: tuple[Shell, ...]
     blades: tuple[Blade, ...] = ()
     bolts: tuple[Bolt, ...] = ()
-    joints: tuple[Joint, ...] = field(default=())
+    joints: tuple[Joint, ...] = ()
 
 
 FlatBar: TypeAlias = Plank | Mullion | ClampingBar | Strap

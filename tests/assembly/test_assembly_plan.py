@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from damage import changed, moved, without
 
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Bolt, Gridshell, Part, all_joints, all_parts, ridge_parts
@@ -196,21 +197,6 @@ def test_a_part_that_no_joint_names_is_refused_by_its_mark(gridshell: Gridshell)
         plan_of(damaged, PEOPLE, LIFT)
 
 
-def _without(plan: Plan, step_id: str) -> Plan:
-    return replace(plan, steps=tuple(step for step in plan.steps if step.id != step_id))
-
-
-def _changed(plan: Plan, step_id: str, **changes: object) -> Plan:
-    steps = (replace(step, **changes) if step.id == step_id else step for step in plan.steps)  # type: ignore[arg-type]
-    return replace(plan, steps=tuple(steps))
-
-
-def _moved(plan: Plan, mark: str, step_id: str) -> Plan:
-    steps = (replace(step, marks=tuple(other for other in step.marks if other != mark)) for step in plan.steps)
-    steps = (replace(step, marks=(*step.marks, mark)) if step.id == step_id else step for step in steps)
-    return replace(plan, steps=tuple(steps))
-
-
 def _swapped(plan: Plan, a: str, b: str) -> Plan:
     at = {step.id: i for i, step in enumerate(plan.steps)}
     steps = list(plan.steps)
@@ -219,32 +205,32 @@ def _swapped(plan: Plan, a: str, b: str) -> Plan:
 
 
 FAULTS: list[tuple[Callable[[Plan], Plan], str]] = [
-    (lambda plan: _without(plan, "S1.lay.4"), "S1-G-14: no step adds it"),
-    (lambda plan: _changed(plan, "S1.lay.3", marks=("S1-G-01", "S1-G-01")), "S1-G-01: 2 steps add it"),
-    (lambda plan: _changed(plan, "S1.lay.3", marks=("S1-G-99",)), "S1-G-99: a step adds it, but"),
-    (lambda plan: _changed(plan, "S1.lay.3", predecessors=()), "nothing forces step S1.lay.1 before"),
-    (lambda plan: _changed(plan, "S1.hoist", predecessors=()), "is a stud, but nothing forces"),
-    (lambda plan: _changed(plan, "S1.hoist", hold=""), "S1: expected one hoist step with a hold point"),
-    (lambda plan: _changed(plan, "S1.edge.lower", predecessors=()), "S1-E-01 is an edge plank, but nothing forces"),
-    (lambda plan: _changed(plan, "S2.tighten", predecessors=()), "S2-G-01 is part of the stiff shell"),
+    (lambda plan: without(plan, "S1.lay.4"), "S1-G-14: no step adds it"),
+    (lambda plan: changed(plan, "S1.lay.3", marks=("S1-G-01", "S1-G-01")), "S1-G-01: 2 steps add it"),
+    (lambda plan: changed(plan, "S1.lay.3", marks=("S1-G-99",)), "S1-G-99: a step adds it, but"),
+    (lambda plan: changed(plan, "S1.lay.3", predecessors=()), "nothing forces step S1.lay.1 before"),
+    (lambda plan: changed(plan, "S1.hoist", predecessors=()), "is a stud, but nothing forces"),
+    (lambda plan: changed(plan, "S1.hoist", hold=""), "S1: expected one hoist step with a hold point"),
+    (lambda plan: changed(plan, "S1.edge.lower", predecessors=()), "S1-E-01 is an edge plank, but nothing forces"),
+    (lambda plan: changed(plan, "S2.tighten", predecessors=()), "S2-G-01 is part of the stiff shell"),
     (lambda plan: _swapped(plan, "S1.lay.3", "S1.lay.5"), "does not come before it"),
-    (lambda plan: _changed(plan, "S1.lay.1", assemblies=("S1-A1-01",)), "S1-A1-02: laid 0 times"),
-    (lambda plan: _changed(plan, "S1.lay.2", number=3), "step S1.lay.2: number 3, expected 8"),
-    (lambda plan: _without(plan, "S1.edge.upper"), "S1-R-01: no step adds it"),
-    (lambda plan: _changed(plan, "S1.tighten", predecessors=("S1.edge.lower",)), "S1-R-01 is part of the stiff shell"),
-    (lambda plan: _changed(plan, "site.stand.S2", predecessors=("S2.tighten",)), "S2-C-05 carries the shell"),
-    (lambda plan: _moved(plan, "S2-F-05-B1", "S2.tighten"), "S2-F-05-B1 bolts a shoe to the shell"),
-    (lambda plan: _moved(plan, "S3-C-14-T1", "S3.make.1"), "S3-C-14-T1 joins S3-F-14, but nothing forces"),
-    (lambda plan: _moved(plan, "R12-03", "S1.tighten"), "R12-03: nothing forces the standing of S1 before"),
-    (lambda plan: _moved(plan, "R23-03-B2", "site.feet"), "R23-03-B2 joins R23-03, but nothing forces"),
+    (lambda plan: changed(plan, "S1.lay.1", assemblies=("S1-A1-01",)), "S1-A1-02: laid 0 times"),
+    (lambda plan: changed(plan, "S1.lay.2", number=3), "step S1.lay.2: number 3, expected 8"),
+    (lambda plan: without(plan, "S1.edge.upper"), "S1-R-01: no step adds it"),
+    (lambda plan: changed(plan, "S1.tighten", predecessors=("S1.edge.lower",)), "S1-R-01 is part of the stiff shell"),
+    (lambda plan: changed(plan, "site.stand.S2", predecessors=("S2.tighten",)), "S2-C-05 carries the shell"),
+    (lambda plan: moved(plan, "S2-F-05-B1", "S2.tighten"), "S2-F-05-B1 bolts a shoe to the shell"),
+    (lambda plan: moved(plan, "S3-C-14-T1", "S3.make.1"), "S3-C-14-T1 joins S3-F-14, but nothing forces"),
+    (lambda plan: moved(plan, "R12-03", "S1.tighten"), "R12-03: nothing forces the standing of S1 before"),
+    (lambda plan: moved(plan, "R23-03-B2", "site.feet"), "R23-03-B2 joins R23-03, but nothing forces"),
     (
-        lambda plan: _changed(plan, "site.ridge.S1.S2", predecessors=("site.stand.S1",)),
+        lambda plan: changed(plan, "site.ridge.S1.S2", predecessors=("site.stand.S1",)),
         "R12-01-B1: nothing forces the standing of S2 before",
     ),
-    (lambda plan: _moved(plan, "S1-D-05", "site.stand.S1"), "S1-D-05 covers S1, but nothing forces"),
-    (lambda plan: _moved(plan, "S1-P-13", "site.ridge.S1.S2"), "S1-P-13 covers S1, but nothing forces"),
+    (lambda plan: moved(plan, "S1-D-05", "site.stand.S1"), "S1-D-05 covers S1, but nothing forces"),
+    (lambda plan: moved(plan, "S1-P-13", "site.ridge.S1.S2"), "S1-P-13 covers S1, but nothing forces"),
     (
-        lambda plan: _changed(plan, "site.cover.S2", predecessors=("site.stand.S2",)),
+        lambda plan: changed(plan, "site.cover.S2", predecessors=("site.stand.S2",)),
         "S2-M-01 covers S2, but nothing forces step site.stand.S1",
     ),
 ]

@@ -146,8 +146,11 @@ def test_pictures_are_shared_without_loss(booklet: Booklet) -> None:
 
 
 def test_every_picture_of_the_booklet_is_well_formed(booklet: Booklet) -> None:
-    for picture in booklet.pictures.values():
-        ElementTree.fromstring(picture)
+    assert booklet.pictures
+    for name, picture in booklet.pictures.items():
+        root = ElementTree.fromstring(picture)
+        assert root.tag == "{http://www.w3.org/2000/svg}svg", name
+        assert len(root) > 0, name
 
 
 def test_the_german_page_is_german_and_the_same_each_time(german: Planned, gridshell: Gridshell) -> None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from damage import changed, moved, without
 
 from aag_cad.design import Design, load_design
 from aag_cad.parts.model import Gridshell, all_parts
@@ -167,64 +168,49 @@ def test_the_margin_inside_a_square_is_the_distance_to_its_nearest_side() -> Non
     assert margin_inside(square[:2], np.array([1.0, 0.0])) == -np.inf
 
 
-def _without(plan: Plan, step_id: str) -> Plan:
-    return replace(plan, steps=tuple(step for step in plan.steps if step.id != step_id))
-
-
-def _changed(plan: Plan, step_id: str, **changes: object) -> Plan:
-    steps = (replace(step, **changes) if step.id == step_id else step for step in plan.steps)  # type: ignore[arg-type]
-    return replace(plan, steps=tuple(steps))
-
-
-def _moved(plan: Plan, mark: str, step_id: str) -> Plan:
-    steps = (replace(step, marks=tuple(other for other in step.marks if other != mark)) for step in plan.steps)
-    steps = (replace(step, marks=(*step.marks, mark)) if step.id == step_id else step for step in steps)
-    return replace(plan, steps=tuple(steps))
-
-
 FAULTS: list[tuple[Callable[[Plan], Plan], str]] = [
-    (lambda p: _without(p, "S1.divide"), "S1: expected one divide step"),
-    (lambda p: _changed(p, "S1.divide", extras=()), "S1: expected one divide step with hold point, props and what"),
-    (lambda p: _changed(p, "S1.divide", props=()), "S1: expected one divide step with hold point, props and what"),
-    (lambda p: _changed(p, "S1.divide", predecessors=()), "is part of the stiff shell, but nothing forces"),
-    (lambda p: _without(p, "site.stand.S1.2"), "S1.2: expected one stand step"),
-    (lambda p: _changed(p, "site.stand.S1.2", hold=""), "S1.2: expected one stand step with a hold point"),
-    (lambda p: _changed(p, "site.stand.S1.2", id="site.stand.S1"), "stands what is no segment of it"),
+    (lambda p: without(p, "S1.divide"), "S1: expected one divide step"),
+    (lambda p: changed(p, "S1.divide", extras=()), "S1: expected one divide step with hold point, props and what"),
+    (lambda p: changed(p, "S1.divide", props=()), "S1: expected one divide step with hold point, props and what"),
+    (lambda p: changed(p, "S1.divide", predecessors=()), "is part of the stiff shell, but nothing forces"),
+    (lambda p: without(p, "site.stand.S1.2"), "S1.2: expected one stand step"),
+    (lambda p: changed(p, "site.stand.S1.2", hold=""), "S1.2: expected one stand step with a hold point"),
+    (lambda p: changed(p, "site.stand.S1.2", id="site.stand.S1"), "stands what is no segment of it"),
     (
-        lambda p: _changed(p, "site.stand.S1.2", predecessors=("site.feet", "S1.tighten")),
+        lambda p: changed(p, "site.stand.S1.2", predecessors=("site.feet", "S1.tighten")),
         "S1.2: stands in step site.stand.S1.2, but nothing forces the parting of S1",
     ),
-    (lambda p: _changed(p, "site.stand.S1.1", props=()), "S1.1: step site.stand.S1.1 names 0 props"),
-    (lambda p: _changed(p, "site.stand.S1.1", props=("S2-N-082", "S2-N-064")), "names 2 props of S1, expected"),
+    (lambda p: changed(p, "site.stand.S1.1", props=()), "S1.1: step site.stand.S1.1 names 0 props"),
+    (lambda p: changed(p, "site.stand.S1.1", props=("S2-N-082", "S2-N-064")), "names 2 props of S1, expected"),
     # Studs at its foot hold nothing: the centre of gravity lies further in.
     (
-        lambda p: _changed(p, "site.stand.S1.1", props=("S1-N-001", "S1-N-007")),
+        lambda p: changed(p, "site.stand.S1.1", props=("S1-N-001", "S1-N-007")),
         "S1.1: its centre of gravity is outside",
     ),
     (
-        lambda p: _changed(p, "site.stand.S1.3", predecessors=("site.feet", "S1.divide")),
+        lambda p: changed(p, "site.stand.S1.3", predecessors=("site.feet", "S1.divide")),
         "S1.3: nothing forces a segment beside it to stand",
     ),
-    (lambda p: _without(p, "site.splice.S1.3.S1.2"), "S1.2, S1.3: expected one splice step"),
-    (lambda p: _changed(p, "site.splice.S1.3.S1.2", extras=()), "S1.2, S1.3: expected one splice step"),
+    (lambda p: without(p, "site.splice.S1.3.S1.2"), "S1.2, S1.3: expected one splice step"),
+    (lambda p: changed(p, "site.splice.S1.3.S1.2", extras=()), "S1.2, S1.3: expected one splice step"),
     (
-        lambda p: _changed(p, "site.splice.S1.1.S1.2", predecessors=("site.stand.S1.2",)),
+        lambda p: changed(p, "site.splice.S1.1.S1.2", predecessors=("site.stand.S1.2",)),
         "S1.1: joined in step site.splice.S1.1.S1.2, but nothing forces its standing",
     ),
-    (lambda p: _moved(p, "S1-F-01-B1", "site.stand.S1.2"), "S1-F-01-B1 bolts a shoe of S1.1"),
+    (lambda p: moved(p, "S1-F-01-B1", "site.stand.S1.2"), "S1-F-01-B1 bolts a shoe of S1.1"),
     (
-        lambda p: _changed(p, "site.stand.S1.2", props=("S1-N-086", "S1-N-088")),
+        lambda p: changed(p, "site.stand.S1.2", props=("S1-N-086", "S1-N-088")),
         "S1: stands without the prop under S1-K-",
     ),
-    (lambda p: _changed(p, "site.ridge.S1.S2", props=()), "is not named in step site.ridge.S1.S2"),
-    (lambda p: _changed(p, "S1.hoist", props=()), "step S1.hoist: the shell needs a prop under"),
-    (lambda p: _changed(p, "S1.fix.1", props=()), "step S1.fix.1: the shell needs a prop under"),
-    (lambda p: _changed(p, "S1.tighten", props=()), "step S1.tighten: the shell needs a prop under"),
-    (lambda p: _changed(p, "S1.fix.2", predecessors=("S1.edge.upper",)), "but nothing forces step S1.fix.1 before it"),
-    (lambda p: _changed(p, "S1.fix.1", predecessors=("S1.hoist",)), "but nothing forces step S1.edge.upper before it"),
-    (lambda p: _moved(p, "S1-N-040-B1", "S1.tighten"), "S1-N-040-B1 holds a stud, but nothing forces"),
+    (lambda p: changed(p, "site.ridge.S1.S2", props=()), "is not named in step site.ridge.S1.S2"),
+    (lambda p: changed(p, "S1.hoist", props=()), "step S1.hoist: the shell needs a prop under"),
+    (lambda p: changed(p, "S1.fix.1", props=()), "step S1.fix.1: the shell needs a prop under"),
+    (lambda p: changed(p, "S1.tighten", props=()), "step S1.tighten: the shell needs a prop under"),
+    (lambda p: changed(p, "S1.fix.2", predecessors=("S1.edge.upper",)), "but nothing forces step S1.fix.1 before it"),
+    (lambda p: changed(p, "S1.fix.1", predecessors=("S1.hoist",)), "but nothing forces step S1.edge.upper before it"),
+    (lambda p: moved(p, "S1-N-040-B1", "S1.tighten"), "S1-N-040-B1 holds a stud, but nothing forces"),
     (
-        lambda p: _changed(p, "site.cover.S1", predecessors=("site.stand.S1.2", "site.stand.S2.2")),
+        lambda p: changed(p, "site.cover.S1", predecessors=("site.stand.S1.2", "site.stand.S2.2")),
         "covers S1, but nothing forces step",
     ),
 ]
@@ -266,7 +252,7 @@ def _with_slide(plan: Plan, geodesic: str) -> Plan:
 def test_a_geodesic_may_be_slid_in_after_the_beams_above_it(plan: Plan, pair: Gridshell, cut: Segmentation) -> None:
     slid = _with_slide(plan, "S1-G-05")
     assert check_plan(slid, pair, cut) == []
-    early = _changed(slid, "S1.slide.1", predecessors=("S1.lay.1",))
+    early = changed(slid, "S1.slide.1", predecessors=("S1.lay.1",))
     assert any("S1-G-05 in step S1.slide.1 passes" in problem for problem in check_plan(early, pair, cut))
 
 
