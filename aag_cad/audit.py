@@ -8,10 +8,10 @@ import numpy as np
 
 from aag_cad.design import Design
 from aag_cad.findings import Finding, Severity, worst_first
-from aag_cad.mechanics.cover import FACADE_CHECKS
-from aag_cad.mechanics.fastener_spacing import shortfalls
-from aag_cad.mechanics.lamella import LamellaStress, lamella_stress
-from aag_cad.mechanics.supports import footing_checks
+from aag_cad.mechanics.checks.cover import FACADE_CHECKS
+from aag_cad.mechanics.checks.fastener_spacing import shortfalls
+from aag_cad.mechanics.checks.lamella import LamellaStress, lamella_stress
+from aag_cad.mechanics.checks.supports import footing_checks
 from aag_cad.parts.bolting import axis_distance, bolt_holes, bolts_by_joint
 from aag_cad.parts.clash import clashes
 from aag_cad.parts.marks import parse_mark
@@ -63,7 +63,7 @@ def hole_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     """Yield AAG201 to AAG207: where holes, fasteners and washers miss EN 1995-1-1, tables 8.2 and 8.4, and 10.4.3.
 
     AAG201 from the end, AAG202 from the edge, AAG203 from each other, AAG204 size of the hole, AAG205 in a coupling
-    block, AAG206 in a stud, AAG207 washers; planks alike are named once. See ``aag_cad.mechanics.fastener_spacing``.
+    block, AAG206 in a stud, AAG207 washers; planks alike are named once. See ``aag_cad.mechanics.checks.fastener_spacing``.
     """
     yield from shortfalls(gridshell)
 

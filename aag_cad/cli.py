@@ -147,7 +147,7 @@ def build(
     from aag_cad.design import load_design
 
     read = load_design(design)
-    from aag_cad.export.ifc_options import IfcGeometry, IfcOptions, IfcSchema
+    from aag_cad.export.ifc.options import IfcGeometry, IfcOptions, IfcSchema
     from aag_cad.outputs import chosen_outputs, left_out
     from aag_cad.pipeline import MODEL_STAGES, curves_from
     from aag_cad.pipeline import build as run
@@ -227,9 +227,9 @@ def plan(
     from dataclasses import asdict
 
     from aag_cad.planning import STAGES, explained, planned_source, read_source, write_plan
-    from assembly.language import language_of
-    from assembly.plan import plan_json
-    from assembly.segment_search import limits_from
+    from assembly.base.language import language_of
+    from assembly.plan.assembly_plan import plan_json
+    from assembly.transport.search import limits_from
 
     printed, limits = language_of(lang), limits_from(transport) if transport else None
     with _progress(2 if explain else STAGES, as_json) as report:

@@ -7,16 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from aag_cad.errors import DesignError
-from aag_cad.export.ifc_options import IfcOptions
+from aag_cad.export.ifc.options import IfcOptions
+from aag_cad.model import Model
 from aag_cad.network.polylines import polylines_json
 from aag_cad.shop.purchases import Purchases
 from aag_cad.web.interpolation import interpolated_surface
 from aag_cad.web.npz import web_npz
 from aag_cad.web.obj import web_obj
-from aag_cad.worked import Model
 
 if TYPE_CHECKING:
-    from assembly.planned import Planned
+    from assembly.plan.planned import Planned
 
 
 @dataclass(frozen=True)
@@ -40,13 +40,13 @@ def _write_gridshell(dossier: Dossier, folder: Path) -> None:
 
 
 def _write_step(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.step import write_step
+    from aag_cad.export.cad.step import write_step
 
     write_step(dossier.model.gridshell, folder / f"{dossier.model.gridshell.name}.step")
 
 
 def _write_ifc(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.ifc import write_ifc
+    from aag_cad.export.ifc.model import write_ifc
 
     gridshell, design = dossier.model.gridshell, dossier.model.design
     project = design.project
@@ -57,13 +57,13 @@ def _write_ifc(dossier: Dossier, folder: Path) -> None:
 
 
 def _write_glb(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.gltf import write_glb
+    from aag_cad.export.cad.gltf import write_glb
 
     write_glb(dossier.model.gridshell, folder / f"{dossier.model.gridshell.name}.glb")
 
 
 def _write_tables(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.tables import write_checks_table, write_holes_table, write_parts_table
+    from aag_cad.export.office.tables import write_checks_table, write_holes_table, write_parts_table
 
     write_parts_table(dossier.model.gridshell, folder / "tables" / "parts.csv")
     write_holes_table(dossier.model.gridshell, folder / "tables" / "holes.csv")
@@ -71,8 +71,8 @@ def _write_tables(dossier: Dossier, folder: Path) -> None:
 
 
 def _write_shop(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.prefabrication import write_drilling, write_prefabrication
-    from aag_cad.export.purchases import write_cutting, write_purchases
+    from aag_cad.export.office.purchases import write_cutting, write_purchases
+    from aag_cad.export.workshop.prefabrication import write_drilling, write_prefabrication
 
     write_prefabrication(dossier.model.gridshell, folder / "tables" / "prefabrication.csv")
     write_drilling(dossier.model.gridshell, folder / "tables" / "drilling.csv")
@@ -81,38 +81,38 @@ def _write_shop(dossier: Dossier, folder: Path) -> None:
 
 
 def _write_blanks(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.dxf import write_blank_dxfs
+    from aag_cad.export.workshop.dxf import write_blank_dxfs
 
     write_blank_dxfs(dossier.model.gridshell, folder / "blanks")
 
 
 def _write_templates(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.templates import write_templates
+    from aag_cad.export.workshop.drill_templates import write_templates
 
     write_templates(dossier.model.gridshell, folder / "templates.pdf", dossier.model.design.stock.template_paper)
 
 
 def _write_labels(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.labels import write_labels
+    from aag_cad.export.workshop.labels import write_labels
 
     write_labels(dossier.model.gridshell, folder / "labels.pdf")
 
 
 def _write_btlx(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.btlx import write_btlx
+    from aag_cad.export.workshop.btlx import write_btlx
 
     write_btlx(dossier.model.gridshell, folder / f"{dossier.model.gridshell.name}.btlx")
 
 
 def _write_passports(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.passports import write_passports
+    from aag_cad.export.workshop.passports import write_passports
 
     reuse = folder / "reuse"
     write_passports(dossier.model.gridshell, reuse / "passports.json", reuse / "passports.pdf", reuse / "reuse.csv")
 
 
 def _write_facade(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.facade import write_facade_table, write_flat_patterns
+    from aag_cad.export.workshop.facade_patterns import write_facade_table, write_flat_patterns
 
     write_flat_patterns(dossier.model.design, dossier.model.gridshell, folder / "facade")
     write_facade_table(dossier.model.design, dossier.model.gridshell, folder / "tables" / "facade.csv")
@@ -122,7 +122,7 @@ def _plan_writer(name: str) -> Writer:
     """Return the writer of an output of the plan."""
 
     def write(dossier: Dossier, folder: Path) -> None:
-        from aag_cad.export.planning import PLAN_WRITERS, Planning
+        from aag_cad.export.office.plan_files import PLAN_WRITERS, Planning
 
         PLAN_WRITERS[name](Planning(dossier.planned, dossier.model.gridshell, dossier.model.design.crew), folder)
 
@@ -130,7 +130,7 @@ def _plan_writer(name: str) -> Writer:
 
 
 def _write_overview(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.overview import write_overview
+    from aag_cad.export.office.overview import write_overview
 
     write_overview(dossier.model.gridshell, folder / "overview.svg", folder / "overview.png")
 
@@ -143,7 +143,7 @@ def _write_web(dossier: Dossier, folder: Path) -> None:
 
 
 def _write_curves(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.step_curves import write_step_curves
+    from aag_cad.export.cad.step_curves import write_step_curves
     from aag_cad.files import write_text
 
     surface = interpolated_surface(dossier.model.net, dossier.model.design.step)
@@ -152,7 +152,7 @@ def _write_curves(dossier: Dossier, folder: Path) -> None:
 
 
 def _write_rhino(dossier: Dossier, folder: Path) -> None:
-    from aag_cad.export.rhino import write_3dm
+    from aag_cad.export.cad.rhino import write_3dm
 
     write_3dm(dossier.model.gridshell, folder / f"{dossier.model.gridshell.name}.3dm")
 

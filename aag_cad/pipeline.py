@@ -19,12 +19,13 @@ from aag_cad.design_sections import (
     SplineSurface,
 )
 from aag_cad.errors import DesignError
-from aag_cad.export.ifc_options import IfcOptions, require_known
+from aag_cad.export.ifc.options import IfcOptions, require_known
 from aag_cad.files import publishing, read_text, sizes_below
 from aag_cad.findings import Finding, worst_first
 from aag_cad.geometry.profiles import ArcProfile, CrpcProfile, HyperboloidProfile, Profile, SplineProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.geometry.surface import Chart
+from aag_cad.model import Model
 from aag_cad.network.build import shell_network
 from aag_cad.network.edges import bottom_coordinate, top_coordinate
 from aag_cad.network.extent import shell_extent
@@ -42,10 +43,9 @@ from aag_cad.web.optimise import Method, optimise
 from aag_cad.web.quality import quality
 from aag_cad.web.start import StartWeb, start_web, web_chart
 from aag_cad.web.web import Web, crpc_web, sampled_web
-from aag_cad.worked import Model
 
 if TYPE_CHECKING:
-    from assembly.planned import Planned
+    from assembly.plan.planned import Planned
 
 Report = Callable[[str], None]
 IterationReport = Callable[[Iteration], None]
@@ -138,7 +138,7 @@ def worked_surface(design: Design) -> tuple[Chart, Web]:
 
 def write_optimised(found: Optimised, goals: Goals, folder: Path) -> dict[str, int]:
     """Write web.obj and web.npz without the ghost rows, and the report, into a folder; return the files' sizes."""
-    from aag_cad.export.optimise_report import write_report
+    from aag_cad.export.office.optimise_report import write_report
     from aag_cad.files import write_bytes, write_text
 
     web = Web(found.web.vertices[goals.bottom_row or 0 :])
@@ -191,9 +191,9 @@ def build(
     behind. ``report`` is called with the name of each stage as it begins. FileError if the folder cannot be written,
     PlanError if the sheets are not printed in ``language``.
     """
-    from aag_cad.export.summary import summary_of, write_summary
-    from assembly.language import language_of
-    from assembly.planned import limits_of, planned_of
+    from aag_cad.export.office.summary import summary_of, write_summary
+    from assembly.base.language import language_of
+    from assembly.plan.planned import limits_of, planned_of
 
     outputs, ifc_options = chosen_outputs(only), ifc or IfcOptions()
     require_known(ifc_options)

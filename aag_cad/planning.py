@@ -11,22 +11,22 @@ import networkx as nx
 from aag_cad.design import load_design
 from aag_cad.design_making import Crew
 from aag_cad.errors import DesignError, FileError
-from aag_cad.export.planning import PLAN_WRITERS, Planning, write_graph_groups, write_graph_plan
+from aag_cad.export.office.plan_files import PLAN_WRITERS, Planning, write_graph_groups, write_graph_plan
 from aag_cad.files import publishing, read_text, sizes_below
 from aag_cad.findings import Finding, worst_first
 from aag_cad.parts.model import Gridshell
 from aag_cad.parts.store import read_gridshell
 from aag_cad.pipeline import Report, gridshell_of
-from assembly.explain import explanation
-from assembly.graph import assembly_graph
-from assembly.graph_file import graph_text, read_graph, shipped_graphs
-from assembly.graph_plan import graph_durations, graph_plan
-from assembly.language import Language
-from assembly.locking import LockingOrder
-from assembly.plan import Plan
-from assembly.planned import NO_LIMITS, limits_of, planned_of
-from assembly.schedule import Schedule, schedule_of
-from assembly.segment_search import Limits
+from assembly.base.language import Language
+from assembly.graph.files import graph_text, read_graph, shipped_graphs
+from assembly.graph.gridshell_graph import assembly_graph
+from assembly.locking.order import LockingOrder
+from assembly.plan.assembly_plan import Plan
+from assembly.plan.explain import explanation
+from assembly.plan.graph_plan import graph_durations, graph_plan
+from assembly.plan.planned import NO_LIMITS, limits_of, planned_of
+from assembly.plan.schedule import Schedule, schedule_of
+from assembly.transport.search import Limits
 
 # For what names no crew: four people who lift 25 kg each (EN 1005-2, the mass that most adults may lift).
 FOUR = Crew.model_validate({"people": 4, "lift_limit": 25.0})

@@ -7,7 +7,7 @@ import numpy as np
 
 from aag_cad.errors import DesignError
 from aag_cad.geometry.framed import curvatures_at
-from aag_cad.mechanics.lamella import lamella_stress
+from aag_cad.mechanics.checks.lamella import lamella_stress
 from aag_cad.parts.model import Blank, CrossSection, Gridshell, Hole, Plank, Timber
 from aag_cad.parts.quantities import largest_twist, smallest_radius
 from aag_cad.units import Floats

@@ -6,9 +6,9 @@ import pytest
 
 from aag_cad.design import Design
 from aag_cad.parts.model import Gridshell
-from assembly.disassembly import disassembly_of
-from assembly.plan import plan_of
-from assembly.planned import Planned, planned_of
+from assembly.plan.assembly_plan import plan_of
+from assembly.plan.disassembly import disassembly_of
+from assembly.plan.planned import Planned, planned_of
 
 
 @pytest.fixture(scope="session")

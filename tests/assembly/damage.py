@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from assembly.steps import Plan
+from assembly.base.steps import Plan
 
 
 def without(plan: Plan, step_id: str) -> Plan:

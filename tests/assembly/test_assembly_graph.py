@@ -13,7 +13,7 @@ from aag_cad.parts.mesh import frame_matrix, shell_mesh
 from aag_cad.parts.model import Gridshell, Part, Strip, all_joints, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.quantities import mass
 from aag_cad.units import Floats
-from assembly.graph import assembly_graph, part_point
+from assembly.graph.gridshell_graph import assembly_graph, part_point
 
 
 @pytest.fixture(scope="module")

@@ -9,11 +9,11 @@ from damage import changed, moved, without
 
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Bolt, Gridshell, Part, all_joints, all_parts, ridge_parts
-from assembly.check import check_plan
-from assembly.errors import PlanError
-from assembly.plan import piece_weights, plan_of
-from assembly.site import site_works
-from assembly.steps import Plan, Step
+from assembly.base.errors import PlanError
+from assembly.base.steps import Plan, Step
+from assembly.checks.plan import check_plan
+from assembly.plan.assembly_plan import piece_weights, plan_of
+from assembly.plan.site_work import site_works
 
 PEOPLE, LIFT = 4, 25.0
 

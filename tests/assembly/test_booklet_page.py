@@ -10,15 +10,15 @@ import pytest
 from aag_cad.design import Design
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.resources import template
-from assembly.booklet import Booklet, common_of, disassembly_booklet, sequence_booklet
-from assembly.graph_file import read_graph
-from assembly.graph_page import graph_html
-from assembly.graph_plan import graph_durations, graph_plan
-from assembly.interlacing import interlacing
-from assembly.page import page_html, sequence_html
-from assembly.planned import Planned
-from assembly.schedule import schedule_of
-from assembly.shared_pictures import shared_pictures
+from assembly.booklet.contents import Booklet, common_of, disassembly_booklet, sequence_booklet
+from assembly.booklet.graph_page import graph_html
+from assembly.booklet.phone_page import page_html, sequence_html
+from assembly.booklet.shared_pictures import shared_pictures
+from assembly.graph.files import read_graph
+from assembly.graph.interlacing import interlacing
+from assembly.plan.graph_plan import graph_durations, graph_plan
+from assembly.plan.planned import Planned
+from assembly.plan.schedule import schedule_of
 
 # What a telephone loads in a few seconds where the network is bad.
 MOST_BYTES = 6_000_000

@@ -9,12 +9,12 @@ import pytest
 
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.parts.model import Blank, CrossSection, Gridshell, Plank, Shell, all_parts
-from assembly.control import prop_points, sling_points
-from assembly.disassembly import disassembly_of, stored_energy
-from assembly.disassembly_check import check_disassembly
-from assembly.errors import PlanError
-from assembly.plan import plan_of
-from assembly.steps import DOWN_PHASES, Plan
+from assembly.base.errors import PlanError
+from assembly.base.steps import DOWN_PHASES, Plan
+from assembly.checks.disassembly import check_disassembly
+from assembly.plan.assembly_plan import plan_of
+from assembly.plan.disassembly import disassembly_of, stored_energy
+from assembly.plan.shape_control import prop_points, sling_points
 
 
 @pytest.fixture(scope="module")

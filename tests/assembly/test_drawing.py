@@ -10,16 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aag_cad.parts.model import Blade, Footing, Gridshell, Mullion, Rod, Shell, Strap, Strip, shell_parts
-from assembly.control import control_figures, outer_end, sling_points
-from assembly.details import beam_strips_svg
-from assembly.drawing import Box, label_box, number, placed_labels, places_round
-from assembly.outline import ridge_outline, shell_outline, vault_outline
-from assembly.plan import plan_of
-from assembly.scenes import PAGE_WIDTH, Sheets, sheets_of, step_pictures
-from assembly.sections import block_section_svg, node_section_svg
-from assembly.steel import blade_section_svg, foot_section_svg, strap_section_svg
-from assembly.steps import Plan
-from assembly.view import shell_view
+from assembly.base.shell_axes import shell_view
+from assembly.base.steps import Plan
+from assembly.drawing.bench import beam_strips_svg
+from assembly.drawing.joint_sections import block_section_svg, node_section_svg
+from assembly.drawing.outline import ridge_outline, shell_outline, vault_outline
+from assembly.drawing.steel_sections import blade_section_svg, foot_section_svg, strap_section_svg
+from assembly.drawing.svg import Box, label_box, number, placed_labels, places_round
+from assembly.pictures.scenes import PAGE_WIDTH, Sheets, sheets_of, step_pictures
+from assembly.plan.assembly_plan import plan_of
+from assembly.plan.shape_control import control_figures, outer_end, sling_points
 
 SVG = "{http://www.w3.org/2000/svg}"
 BOLT_FILL = 'fill="#222"'

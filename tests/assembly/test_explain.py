@@ -6,10 +6,10 @@ import networkx as nx
 import pytest
 
 from aag_cad.parts.model import Gridshell
-from assembly.errors import PlanError
-from assembly.explain import explanation, step_of_parts
-from assembly.graph import assembly_graph
-from assembly.planned import Planned
+from assembly.base.errors import PlanError
+from assembly.graph.gridshell_graph import assembly_graph
+from assembly.plan.explain import explanation, step_of_parts
+from assembly.plan.planned import Planned
 
 
 @pytest.fixture(scope="module")

@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell, Shell
-from assembly.errors import PlanError
-from assembly.flat import courses, flat_order, flat_order_of, groups_of, row_groups, stud_rows
-from assembly.graph import assembly_graph
-from assembly.graph_file import graph_text, read_graph
-from assembly.interlacing import Interlacing, interlacing
-from assembly.view import shell_view, sweep_direction
+from assembly.base.errors import PlanError
+from assembly.base.shell_axes import shell_view, sweep_direction
+from assembly.graph.files import graph_text, read_graph
+from assembly.graph.gridshell_graph import assembly_graph
+from assembly.graph.interlacing import Interlacing, interlacing
+from assembly.laying.order import courses, flat_order, flat_order_of, groups_of, row_groups, stud_rows
 
 
 def test_a_shell_is_laid_in_three_runs(shell: Shell) -> None:

@@ -24,10 +24,10 @@ from aag_cad.parts.model import (
 )
 from aag_cad.pipeline import gridshell_of
 from aag_cad.units import Floats, vector
-from assembly.errors import PlanError
-from assembly.flat_net import is_ring, shell_net
-from assembly.flat_terms import Residuals, bending, net_arrays, sideways, started, stretch, turning
-from assembly.flattening import LENGTH_LIMIT, FlatMember, FlatState, flat_findings, flat_state, outline_of
+from assembly.base.errors import PlanError
+from assembly.laying.flattening import LENGTH_LIMIT, FlatMember, FlatState, flat_findings, flat_state, outline_of
+from assembly.laying.net import is_ring, shell_net
+from assembly.laying.terms import Residuals, bending, net_arrays, sideways, started, stretch, turning
 
 UP = np.array([0.0, 0.0, 1.0])
 

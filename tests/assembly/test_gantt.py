@@ -8,12 +8,12 @@ import pytest
 
 from aag_cad.design_making import Minutes
 from aag_cad.parts.model import Gridshell
-from assembly.disassembly import disassembly_of
-from assembly.durations import step_minutes
-from assembly.gantt import HEIGHT, WIDTH, gantt_svg
-from assembly.plan import plan_of
-from assembly.schedule import Schedule, schedule_of
-from assembly.steps import PHASES, Phase, Plan, Step
+from assembly.base.steps import PHASES, Phase, Plan, Step
+from assembly.booklet.gantt import HEIGHT, WIDTH, gantt_svg
+from assembly.plan.assembly_plan import plan_of
+from assembly.plan.disassembly import disassembly_of
+from assembly.plan.durations import step_minutes
+from assembly.plan.schedule import Schedule, schedule_of
 
 SVG = "{http://www.w3.org/2000/svg}"
 

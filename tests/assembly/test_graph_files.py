@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from aag_cad.errors import FileError
 from aag_cad.parts.model import Gridshell
 from aag_cad.parts.store import gridshell_json
-from assembly.errors import PlanError
-from assembly.graph import assembly_graph
-from assembly.graph_file import (
+from assembly.base.errors import PlanError
+from assembly.graph.faults import EDGE_KINDS, graph_problems
+from assembly.graph.files import (
     graph_json,
     graph_of_gridshell_json,
     graph_text,
@@ -25,9 +25,9 @@ from assembly.graph_file import (
     shipped_graphs,
     with_defaults,
 )
-from assembly.graph_problems import EDGE_KINDS, graph_problems
-from assembly.interlacing import interlacing
-from assembly.weaves import circle_graph, kagome_graph
+from assembly.graph.gridshell_graph import assembly_graph
+from assembly.graph.interlacing import interlacing
+from assembly.graph.weaves import circle_graph, kagome_graph
 
 Graph = nx.MultiGraph
 

@@ -13,15 +13,15 @@ from hypothesis import strategies as st
 
 from aag_cad.design_making import Minutes
 from aag_cad.parts.model import Gridshell
-from assembly.crew import Crew, lifting_findings
-from assembly.errors import PlanError
-from assembly.graph import assembly_graph
-from assembly.graph_file import graph_text, read_graph
-from assembly.graph_plan import JOINTS_A_STEP, LAID_A_STEP, check_graph_plan, graph_durations, graph_plan
-from assembly.interlacing import interlacing
-from assembly.plan import plan_json
-from assembly.schedule import people_curve, schedule_of
-from assembly.steps import Plan, Step
+from assembly.base.crew import Crew, lifting_findings
+from assembly.base.errors import PlanError
+from assembly.base.steps import Plan, Step
+from assembly.graph.files import graph_text, read_graph
+from assembly.graph.gridshell_graph import assembly_graph
+from assembly.graph.interlacing import interlacing
+from assembly.plan.assembly_plan import plan_json
+from assembly.plan.graph_plan import JOINTS_A_STEP, LAID_A_STEP, check_graph_plan, graph_durations, graph_plan
+from assembly.plan.schedule import people_curve, schedule_of
 
 MINUTES = Minutes.model_validate({})
 
@@ -228,8 +228,8 @@ def test_a_lay_step_lasts_as_long_as_what_is_done_in_it() -> None:
 
 def test_the_plan_does_not_depend_on_the_hash_of_marks() -> None:
     code = (
-        "from assembly.graph_file import graph_text, read_graph; from assembly.graph_plan import graph_plan; "
-        "from assembly.plan import plan_json; print(plan_json(graph_plan(read_graph(graph_text('kagome')), 4, 25.0)))"
+        "from assembly.graph.files import graph_text, read_graph; from assembly.plan.graph_plan import graph_plan; "
+        "from assembly.plan.assembly_plan import plan_json; print(plan_json(graph_plan(read_graph(graph_text('kagome')), 4, 25.0)))"
     )
     here = plan_json(graph_plan(read_graph(graph_text("kagome")), 4, 25.0))
     environment = os.environ | {"PYTHONHASHSEED": "4711"}

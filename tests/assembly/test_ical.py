@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from aag_cad.design_making import Minutes
 from aag_cad.parts.model import Gridshell
-from assembly.durations import step_minutes
-from assembly.errors import PlanError
-from assembly.ical import calendar_text, folded, working_day, write_calendar
-from assembly.plan import plan_of
-from assembly.schedule import Schedule, schedule_of
-from assembly.steps import Plan, Step
+from assembly.base.errors import PlanError
+from assembly.base.steps import Plan, Step
+from assembly.booklet.calendar import calendar_text, folded, working_day, write_calendar
+from assembly.plan.assembly_plan import plan_of
+from assembly.plan.durations import step_minutes
+from assembly.plan.schedule import Schedule, schedule_of
 
 MONDAY = date(2027, 3, 1)
 

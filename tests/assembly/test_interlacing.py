@@ -9,12 +9,12 @@ import pytest
 from weaving import Graph, Weave, flat, graph_of, square, walls
 
 from aag_cad.parts.model import Gridshell
-from assembly.errors import PlanError
-from assembly.graph import assembly_graph
-from assembly.graph_file import graph_text, read_graph
-from assembly.interlacing import Interlacing, Slide, interlacing, refuse_left_out
-from assembly.sliding import bend_radius, free_way
-from assembly.weaves import circle_graph, kagome_graph
+from assembly.base.errors import PlanError
+from assembly.graph.files import graph_text, read_graph
+from assembly.graph.gridshell_graph import assembly_graph
+from assembly.graph.interlacing import Interlacing, Slide, interlacing, refuse_left_out
+from assembly.graph.sliding import bend_radius, free_way
+from assembly.graph.weaves import circle_graph, kagome_graph
 
 
 def test_what_is_said_of_a_crossing_counts_more_than_the_layers() -> None:

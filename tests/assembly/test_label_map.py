@@ -8,12 +8,12 @@ import pytest
 
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Shell
-from assembly.drawing import Box, Label, label_box
-from assembly.errors import PlanError
-from assembly.label_map import MAP_SIZE, label_map_svg
-from assembly.language import LANGUAGES, Language
-from assembly.layer_legend import layer_legend_svg
-from assembly.ranges import short_mark
+from assembly.base.errors import PlanError
+from assembly.base.language import LANGUAGES, Language
+from assembly.base.mark_ranges import short_mark
+from assembly.drawing.svg import Box, Label, label_box
+from assembly.pictures.label_map import MAP_SIZE, label_map_svg
+from assembly.pictures.layer_legend import layer_legend_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -12,19 +12,19 @@ import pytest
 from aag_cad.parts.model import ClampingBar, Gridshell, Mullion, Plank, Shell, Strap, Strip, all_parts
 from aag_cad.parts.products import product_name
 from aag_cad.resources import template
-from assembly.cards import qr_text, step_card, totals
-from assembly.disassembly import disassembly_of
-from assembly.gantt import gantt_svg
-from assembly.language import LANGUAGES, Language, language_of, say, says, words_table
-from assembly.locking import LockingOrder, LockingStep, locking_svg, locking_table, plot_words
-from assembly.locking_model import Prop
-from assembly.names import figure, part_name, phase_name
-from assembly.plan import piece_weights, plan_of
-from assembly.schedule import schedule_of
-from assembly.sections import block_section_svg, node_section_svg
-from assembly.steel import blade_section_svg, foot_section_svg, strap_section_svg
-from assembly.steps import DOWN_PHASES, PHASES, UP_PHASES, Phase, Plan
-from assembly.wording import fasteners_by_kind, wording
+from assembly.base.language import LANGUAGES, Language, language_of, say, says, words_table
+from assembly.base.names import figure, part_name, phase_name
+from assembly.base.steps import DOWN_PHASES, PHASES, UP_PHASES, Phase, Plan
+from assembly.booklet.cards import qr_text, step_card, totals
+from assembly.booklet.gantt import gantt_svg
+from assembly.drawing.joint_sections import block_section_svg, node_section_svg
+from assembly.drawing.steel_sections import blade_section_svg, foot_section_svg, strap_section_svg
+from assembly.locking.model import Prop
+from assembly.locking.order import LockingOrder, LockingStep, locking_svg, locking_table, plot_words
+from assembly.plan.assembly_plan import piece_weights, plan_of
+from assembly.plan.disassembly import disassembly_of
+from assembly.plan.schedule import schedule_of
+from assembly.plan.wording import fasteners_by_kind, wording
 
 TABLES = sorted(path.stem for path in template("printouts", "words").glob("*.toml"))
 # Texts for special cases of a phase: segments of cut shells, edges and shells without straps.

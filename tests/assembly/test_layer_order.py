@@ -11,10 +11,10 @@ from aag_cad.design import Design
 from aag_cad.geometry.framed import framed_curve
 from aag_cad.parts.model import Blank, CrossSection, Frame, Gridshell, Joint, JointStation, Plank, Shell
 from aag_cad.units import Floats, vector
-from assembly.errors import PlanError
-from assembly.graph import assembly_graph
-from assembly.interlacing import interlacing
-from assembly.layers import crossing_levels, layer_precedence
+from assembly.base.errors import PlanError
+from assembly.graph.gridshell_graph import assembly_graph
+from assembly.graph.interlacing import interlacing
+from assembly.graph.layers import crossing_levels, layer_precedence
 
 
 def test_the_layers_of_the_vault_lie_half_a_plank_and_half_a_thickness_apart(shell: Shell, design: Design) -> None:

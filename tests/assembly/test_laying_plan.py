@@ -9,13 +9,13 @@ import pytest
 
 from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
-from assembly.drawing import Box, Label, label_box
-from assembly.errors import PlanError
-from assembly.flat import FlatOrder
-from assembly.flattening import FlatState, flat_state
-from assembly.language import LANGUAGES
-from assembly.laying_plan import PAGES, Page, laying_header, laying_plan_svg, laying_rows
-from assembly.ranges import short_mark
+from assembly.base.errors import PlanError
+from assembly.base.language import LANGUAGES
+from assembly.base.mark_ranges import short_mark
+from assembly.drawing.svg import Box, Label, label_box
+from assembly.laying.flattening import FlatState, flat_state
+from assembly.laying.order import FlatOrder
+from assembly.pictures.laying_plan import PAGES, Page, laying_header, laying_plan_svg, laying_rows
 
 SVG = "{http://www.w3.org/2000/svg}"
 

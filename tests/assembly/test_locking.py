@@ -8,15 +8,16 @@ import numpy as np
 import pytest
 
 from aag_cad.design import Design, load_design
-from aag_cad.mechanics.frame import FrameResult, lowest_modes, static_solution
-from aag_cad.mechanics.frame_model import DOFS, FrameModel, FrameSection, NodalLoad, Support
-from aag_cad.mechanics.frame_system import against_unknowns, frame_system, full_stiffness
-from aag_cad.mechanics.shell_model import ShellFrame, shell_frame
+from aag_cad.mechanics.frame.model import DOFS, FrameModel, FrameSection, NodalLoad, Support
+from aag_cad.mechanics.frame.shell import ShellFrame, shell_frame
+from aag_cad.mechanics.frame.statics import FrameResult, lowest_modes, static_solution
+from aag_cad.mechanics.frame.system import against_unknowns, frame_system, full_stiffness
 from aag_cad.parts.model import Gridshell, Shell
 from aag_cad.pipeline import gridshell_of
 from aag_cad.units import Floats
-from assembly.errors import PlanError
-from assembly.locking import (
+from assembly.base.errors import PlanError
+from assembly.locking.model import GRAVITY, LockingModel, locking_model, modes_of, sag_of
+from assembly.locking.order import (
     LOCKING_HEADER,
     SAG_LIMIT,
     LockingOrder,
@@ -32,7 +33,6 @@ from assembly.locking import (
     lowest_eigenvalue,
     soft_mode_count,
 )
-from assembly.locking_model import GRAVITY, LockingModel, locking_model, modes_of, sag_of
 
 BAY = 300.0
 

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from aag_cad.parts.model import Gridshell, Shell
 from aag_cad.units import Floats
-from assembly.faces import gridshell_faces, tube_faces
-from assembly.painting import covers_of, painting_order, samples_of, unhidden
-from assembly.perspective import perspective_svg
-from assembly.pieces import plank_rings
+from assembly.drawing.faces import gridshell_faces, tube_faces
+from assembly.drawing.painting import covers_of, painting_order, samples_of, unhidden
+from assembly.drawing.part_outlines import plank_rings
+from assembly.drawing.perspective import perspective_svg
 
 
 def square(x: float, y: float, size: float) -> Floats:

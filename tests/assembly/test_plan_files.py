@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from aag_cad.errors import AagError
 from aag_cad.findings import Finding
 from aag_cad.parts.model import Gridshell
-from assembly.errors import PlanError
-from assembly.language import LANGUAGES
-from assembly.plan import plan_json, plan_of, read_plan
-from assembly.steps import PHASES, Plan, Step
+from assembly.base.errors import PlanError
+from assembly.base.language import LANGUAGES
+from assembly.base.steps import PHASES, Plan, Step
+from assembly.plan.assembly_plan import plan_json, plan_of, read_plan
 
 texts = st.text(max_size=12)
 listed = st.lists(texts, max_size=4).map(tuple)

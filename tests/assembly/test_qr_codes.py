@@ -7,10 +7,10 @@ import pytest
 import segno
 
 from aag_cad.parts.model import Gridshell
-from assembly.booklet import Booklet, common_of, sequence_booklet
-from assembly.errors import PlanError
-from assembly.planned import Planned
-from assembly.qr import MOST_CHARACTERS, qr_rows, qr_svg
+from assembly.base.errors import PlanError
+from assembly.booklet.contents import Booklet, common_of, sequence_booklet
+from assembly.booklet.qr import MOST_CHARACTERS, qr_rows, qr_svg
+from assembly.plan.planned import Planned
 
 # The side of the code on a card, and the smallest module that a telephone reads at arm's length, mm.
 SIDE, LEAST_MODULE = 21.0, 0.3

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from weaving import Graph, Weave, ambiguous, can_slide, free_beyond, graph_of, is_acyclic, radius_of, weaves
 
-from assembly.interlacing import interlacing
+from assembly.graph.interlacing import interlacing
 
 
 @given(weaves())

@@ -14,10 +14,11 @@ from aag_cad.design import Design, design_text, parse_design
 from aag_cad.design_making import Minutes
 from aag_cad.errors import DesignError
 from aag_cad.parts.model import Gridshell
-from assembly.durations import person_minutes, step_minutes, step_works
-from assembly.errors import PlanError
-from assembly.plan import plan_of
-from assembly.schedule import (
+from assembly.base.errors import PlanError
+from assembly.base.steps import Plan, Step
+from assembly.plan.assembly_plan import plan_of
+from assembly.plan.durations import person_minutes, step_minutes, step_works
+from assembly.plan.schedule import (
     SCHEDULE_HEADER,
     UNBROKEN,
     critical_path,
@@ -26,7 +27,6 @@ from assembly.schedule import (
     schedule_csv,
     schedule_of,
 )
-from assembly.steps import Plan, Step
 
 MINUTES = Minutes.model_validate({})
 

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from aag_cad.units import Floats
-from assembly.boxes import best_pose, turned_rectangle
-from assembly.errors import PlanError
-from assembly.graph_partition import partition_graph
-from assembly.partition import Cuts, best_chain, best_ring
-from assembly.segment_search import Limits, furthest
+from assembly.base.errors import PlanError
+from assembly.transport.graph_groups import partition_graph
+from assembly.transport.loading import best_pose, turned_rectangle
+from assembly.transport.partition import Cuts, best_chain, best_ring
+from assembly.transport.search import Limits, furthest
 
 Weigh = Callable[[int, int], int | None]
 

@@ -7,10 +7,10 @@ from xml.etree import ElementTree
 import pytest
 
 from aag_cad.parts.model import Gridshell
-from assembly.language import LANGUAGES, Language
-from assembly.segment_picture import segment_svg
-from assembly.segment_search import Limits
-from assembly.segment_sheet import (
+from assembly.base.language import LANGUAGES, Language
+from assembly.pictures.segment_picture import segment_svg
+from assembly.transport.search import Limits
+from assembly.transport.segment_sheet import (
     SEGMENTS_HEADER,
     SPLICES_HEADER,
     brace_words,
@@ -19,7 +19,7 @@ from assembly.segment_sheet import (
     splice_rows,
     splices_of,
 )
-from assembly.segments import Segmentation, segments
+from assembly.transport.segments import Segmentation, segments
 
 LORRY = Limits(12000.0, 2400.0, 2600.0, 3000.0)
 SVG = "{http://www.w3.org/2000/svg}"

@@ -6,19 +6,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from aag_cad.mechanics.frame import static_solution
-from aag_cad.mechanics.frame_model import FrameModel, FrameSection, NodalLoad, Spring, Support
-from aag_cad.mechanics.frame_system import against_unknowns, frame_system, full_stiffness
-from aag_cad.mechanics.shell_model import shell_frame
+from aag_cad.mechanics.frame.model import FrameModel, FrameSection, NodalLoad, Spring, Support
+from aag_cad.mechanics.frame.shell import shell_frame
+from aag_cad.mechanics.frame.statics import static_solution
+from aag_cad.mechanics.frame.system import against_unknowns, frame_system, full_stiffness
 from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.units import Floats, Vector, vector
-from assembly.errors import PlanError
-from assembly.lifting import Brace
-from assembly.locking import SAG_LIMIT
-from assembly.locking_model import GRAVITY
-from assembly.segment_frame import braced_frame, segment_shell
-from assembly.segment_search import Limits
-from assembly.segment_stiffness import (
+from assembly.base.errors import PlanError
+from assembly.locking.model import GRAVITY
+from assembly.locking.order import SAG_LIMIT
+from assembly.transport.frame import braced_frame, segment_shell
+from assembly.transport.lifting import Brace
+from assembly.transport.search import Limits
+from assembly.transport.segments import Segment, Segmentation, segments
+from assembly.transport.stiffness import (
     SLING,
     SegmentHold,
     SegmentStiffness,
@@ -29,7 +30,6 @@ from assembly.segment_stiffness import (
     stiffness_finding,
     stiffness_findings,
 )
-from assembly.segments import Segment, Segmentation, segments
 
 # The crane of 80 kg cuts each shell into five: of two, three, two, three and four geodesics.
 CRANE = Limits(50000.0, 50000.0, 50000.0, 80.0)

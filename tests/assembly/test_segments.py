@@ -13,18 +13,18 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from aag_cad.design import Design, load_design
-from aag_cad.mechanics.fastener_spacing import bolt_distances
+from aag_cad.mechanics.checks.fastener_spacing import bolt_distances
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.mesh import frame_matrix, shell_mesh
 from aag_cad.parts.model import Gridshell, shell_parts
 from aag_cad.parts.quantities import mass
 from aag_cad.pipeline import gridshell_of
-from assembly.boxes import best_pose, hull_points
-from assembly.errors import PlanError
-from assembly.runs import Divisible, divisible, run_between, run_splices
-from assembly.segment_findings import splice_finding
-from assembly.segment_search import Limits, best_stops, limits_from
-from assembly.segments import Segmentation, segment_findings, segments
+from assembly.base.errors import PlanError
+from assembly.transport.cut_pieces import Divisible, divisible, run_between, run_splices
+from assembly.transport.findings import splice_finding
+from assembly.transport.loading import best_pose, hull_points
+from assembly.transport.search import Limits, best_stops, limits_from
+from assembly.transport.segments import Segmentation, segment_findings, segments
 
 LORRY = Limits(12000.0, 2400.0, 2600.0, 3000.0)
 NARROW = Limits(12000.0, 2400.0, 2400.0, 3000.0)

@@ -14,16 +14,16 @@ from aag_cad.design import Design
 from aag_cad.errors import FileError
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Part, all_parts
-from assembly.booklet import common_of, disassembly_booklet, sequence_booklet
-from assembly.cards import part_rows, step_card, step_table, totals
-from assembly.durations import step_minutes
-from assembly.plan import piece_weights, plan_of
-from assembly.planned import Planned
-from assembly.printout import booklet_pdf, sequence_pdf, write_sequence
-from assembly.schedule import schedule_of
-from assembly.segment_search import Limits
-from assembly.segments import segments
-from assembly.steps import Plan, Step
+from assembly.base.steps import Plan, Step
+from assembly.booklet.cards import part_rows, step_card, step_table, totals
+from assembly.booklet.contents import common_of, disassembly_booklet, sequence_booklet
+from assembly.booklet.pdf import booklet_pdf, sequence_pdf, write_sequence
+from assembly.plan.assembly_plan import piece_weights, plan_of
+from assembly.plan.durations import step_minutes
+from assembly.plan.planned import Planned
+from assembly.plan.schedule import schedule_of
+from assembly.transport.search import Limits
+from assembly.transport.segments import segments
 
 # Cover, how a shell is made, map of marks, map of blocks, list of steps, laying plan, its coordinates, schedule.
 FIRST_PAGES = 8

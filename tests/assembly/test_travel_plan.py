@@ -12,20 +12,20 @@ from damage import changed, moved, without
 from aag_cad.design import Design, load_design
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.pipeline import gridshell_of
-from assembly.check import check_plan
-from assembly.disassembly import disassembly_of
-from assembly.disassembly_check import check_disassembly
-from assembly.durations import step_minutes
-from assembly.lifting import margin_inside
-from assembly.locking import LockingOrder, locking_orders
-from assembly.parting import divide_works
-from assembly.plan import lifted, piece_weights, plan_of
-from assembly.schedule import schedule_of
-from assembly.seams import seams, standing_order
-from assembly.segment_search import Limits
-from assembly.segments import Segmentation, segments
-from assembly.site import site_works
-from assembly.steps import Plan, Step
+from assembly.base.steps import Plan, Step
+from assembly.checks.disassembly import check_disassembly
+from assembly.checks.plan import check_plan
+from assembly.locking.order import LockingOrder, locking_orders
+from assembly.plan.assembly_plan import lifted, piece_weights, plan_of
+from assembly.plan.disassembly import disassembly_of
+from assembly.plan.durations import step_minutes
+from assembly.plan.parting import divide_works
+from assembly.plan.schedule import schedule_of
+from assembly.plan.site_work import site_works
+from assembly.transport.lifting import margin_inside
+from assembly.transport.seams import seams, standing_order
+from assembly.transport.search import Limits
+from assembly.transport.segments import Segmentation, segments
 
 LORRY = Limits(12000.0, 2400.0, 2600.0, 3000.0)
 NARROW = Limits(12000.0, 2400.0, 2400.0, 3000.0)

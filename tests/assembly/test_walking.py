@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from aag_cad.units import Floats
-from assembly.footpath import shorter_path
-from assembly.walking import (
+from assembly.laying.footpath import shorter_path
+from assembly.laying.walking import (
     STACK_MARGIN,
     STACK_PACE,
     Line,

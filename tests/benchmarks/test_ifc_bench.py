@@ -13,14 +13,14 @@ import ifcopenshell.validate
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from aag_cad.export.gltf import write_glb
-from aag_cad.export.ifc import IfcOptions, write_ifc
-from aag_cad.export.ifc_options import IFC_SCHEMAS, IfcSchema
+from aag_cad.export.cad.gltf import write_glb
+from aag_cad.export.ifc.model import IfcOptions, write_ifc
+from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcSchema
 from aag_cad.parts.model import Gridshell, Shell, all_parts
 from aag_cad.parts.quantities import gross_volume
 from aag_cad.parts.store import gridshell_json, read_gridshell
 from aag_cad.units import MM3_PER_M3
-from assembly.plan import plan_of
+from assembly.plan.assembly_plan import plan_of
 
 # Marks, volumes in m3 of all bodies; circles drawn with 180 chords, or fasteners are 5 % off.
 _READER = """

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from aag_cad.export.step import write_step
+from aag_cad.export.cad.step import write_step
 from aag_cad.parts.model import Gridshell
 from aag_cad.solids.planks import formed_plank, straight_blank
 from aag_cad.solids.products import product_solids

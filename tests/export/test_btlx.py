@@ -13,8 +13,8 @@ import pytest
 from compas_timber.btlx import BTLxReader
 
 from aag_cad.errors import FileError
-from aag_cad.export.btlx import write_btlx
-from aag_cad.export.ifc_base import project_id
+from aag_cad.export.ifc.frame import project_id
+from aag_cad.export.workshop.btlx import write_btlx
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Bolt, EndCut, Frame, Gridshell, Plank, Screw

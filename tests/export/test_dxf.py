@@ -18,8 +18,8 @@ from ezdxf.path import make_path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aag_cad.export.dxf import dxf_bytes, write_blank_dxfs
-from aag_cad.export.dxf_blanks import HOLE_LAYERS, LAYERS, blank_drawing, joint_names, spread
+from aag_cad.export.workshop.blank_drawings import HOLE_LAYERS, LAYERS, blank_drawing, joint_names, spread
+from aag_cad.export.workshop.dxf import dxf_bytes, write_blank_dxfs
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Plank, Shell
@@ -224,7 +224,7 @@ def test_texts_are_spread_in_order_with_room_between_and_no_drift(wanted: list[f
 def test_a_drawing_has_the_same_bytes_whatever_the_hash_seed() -> None:
     """The library registers classes in the order of a set, which the seed of the process turns about."""
     code = (
-        "import sys; from aag_cad.export.dxf import dxf_bytes; from aag_cad.export.dxf_blanks import Drawing, Line; "
+        "import sys; from aag_cad.export.workshop.dxf import dxf_bytes; from aag_cad.export.workshop.blank_drawings import Drawing, Line; "
         "sys.stdout.buffer.write(dxf_bytes(Drawing('T-01', (Line('OUTLINE', (0.0, 0.0), (9.0, 5.0)),), "
         "(0.0, 0.0, 9.0, 5.0))))"
     )

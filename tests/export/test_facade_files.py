@@ -11,7 +11,7 @@ import pytest
 from ezdxf.document import Drawing
 
 from aag_cad.design import Design
-from aag_cad.export.facade import (
+from aag_cad.export.workshop.facade_patterns import (
     FACADE_HEADER,
     StripPattern,
     edge_ordinates,

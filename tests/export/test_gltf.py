@@ -11,8 +11,8 @@ import trimesh
 
 from aag_cad.design import Design
 from aag_cad.errors import FileError
-from aag_cad.export.gltf import write_glb
-from aag_cad.export.ifc_kinds import colour
+from aag_cad.export.cad.gltf import write_glb
+from aag_cad.export.ifc.kinds import colour
 from aag_cad.parts.mesh import placed, product_mesh, shell_mesh
 from aag_cad.parts.model import Gridshell, Plank, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import product_key

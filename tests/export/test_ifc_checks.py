@@ -17,12 +17,12 @@ import pytest
 from test_ifc_sample import sampled, sampled_steps
 
 from aag_cad.design import load_design
-from aag_cad.export.ifc import IfcOptions, ifc_model, write_ifc
-from aag_cad.export.ifc_options import IFC_SCHEMAS, IfcSchema
-from aag_cad.export.ifc_schemas import attributes_of
+from aag_cad.export.ifc.model import IfcOptions, ifc_model, write_ifc
+from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcSchema
+from aag_cad.export.ifc.schemas import attributes_of
 from aag_cad.parts.model import Gridshell
 from aag_cad.pipeline import gridshell_of
-from assembly.plan import plan_of
+from assembly.plan.assembly_plan import plan_of
 
 File: TypeAlias = ifcopenshell.file
 Edge: TypeAlias = tuple[int, int]

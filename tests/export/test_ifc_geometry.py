@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from test_ifc_sample import sampled
 
-from aag_cad.export.ifc import IfcOptions, ifc_model, write_ifc
-from aag_cad.export.ifc_bodies import welded
-from aag_cad.export.ifc_brep import corner_splines
+from aag_cad.export.ifc.bodies import welded
+from aag_cad.export.ifc.brep import corner_splines
+from aag_cad.export.ifc.model import IfcOptions, ifc_model, write_ifc
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.mesh import frame_matrix, shell_mesh
 from aag_cad.parts.model import Bolt, Gridshell, Part, Plank, Rod, Screw, Shell, all_parts, shell_parts

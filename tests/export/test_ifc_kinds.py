@@ -5,9 +5,9 @@ from typing import get_args
 import ifcopenshell
 import pytest
 
-from aag_cad.export.ifc_kinds import IFC_KINDS, IfcKind
-from aag_cad.export.ifc_options import IFC_SCHEMAS, IfcSchema
-from aag_cad.export.ifc_schemas import attributes_of, type_entity, type_word
+from aag_cad.export.ifc.kinds import IFC_KINDS, IfcKind
+from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcSchema
+from aag_cad.export.ifc.schemas import attributes_of, type_entity, type_word
 from aag_cad.parts.model import Footing, Part, Plank, Shoe
 
 

@@ -10,15 +10,15 @@ import ifcopenshell.util.element
 import pytest
 from test_ifc_sample import sampled, sampled_steps
 
-from aag_cad.export.ifc import IfcOptions, ifc_model
-from aag_cad.export.ifc_assembly_sets import segment_of
-from aag_cad.export.ifc_properties import hole_text
+from aag_cad.export.ifc.assembly_sets import segment_of
+from aag_cad.export.ifc.model import IfcOptions, ifc_model
+from aag_cad.export.ifc.properties import hole_text
 from aag_cad.parts.model import Footing, Gridshell, Hole, Part, Plank, Rod, Strip, all_parts
 from aag_cad.parts.quantities import largest_twist, mass, material_name, smallest_radius
 from aag_cad.parts.strips import flat_pattern
 from aag_cad.shop.groups import all_planks, drill_groups
 from aag_cad.units import deg_per_m
-from assembly.steps import Step
+from assembly.base.steps import Step
 
 File: TypeAlias = ifcopenshell.file
 Sets: TypeAlias = Mapping[str, Mapping[str, Any]]

@@ -9,12 +9,12 @@ import ifcopenshell
 import ifcopenshell.util.element
 import pytest
 
-from aag_cad.export.ifc import ifc_model
-from aag_cad.export.tables import hole_rows, part_row
+from aag_cad.export.ifc.model import ifc_model
+from aag_cad.export.office.tables import hole_rows, part_row
 from aag_cad.parts.model import Gridshell, Plank, all_parts
 from aag_cad.parts.quantities import mass, sizes
-from assembly.plan import plan_of
-from assembly.steps import Step
+from assembly.base.steps import Step
+from assembly.plan.assembly_plan import plan_of
 
 HOLE = re.compile(
     r"(?P<number>\d+): x (?P<x>[\d.]+), y (?P<y>[+-][\d.]+), d (?P<d>[\d.]+)( slot [\d.]+)? (?P<use>\w+) (?P<joint>\S+)"

@@ -5,8 +5,8 @@ from dataclasses import replace
 from typing import get_args
 
 from aag_cad.parts.model import Gridshell, Joint, Part, Shell, all_parts
-from assembly.plan import plan_of
-from assembly.steps import Step
+from assembly.base.steps import Step
+from assembly.plan.assembly_plan import plan_of
 
 OF_A_KIND = 2
 

@@ -12,12 +12,12 @@ from test_ifc_sample import sampled, sampled_steps
 
 from aag_cad.design import Design
 from aag_cad.errors import DesignError
-from aag_cad.export.ifc import IfcOptions, ifc_model
-from aag_cad.export.ifc_schedule import scheduled
-from aag_cad.export.ifc_tasks import Timing, WorkingTime, timings
+from aag_cad.export.ifc.model import IfcOptions, ifc_model
+from aag_cad.export.ifc.schedule import scheduled
+from aag_cad.export.ifc.tasks import Timing, WorkingTime, timings
 from aag_cad.parts.model import Gridshell, all_parts
-from assembly.plan import Plan, Step
-from assembly.schedule import critical_path
+from assembly.plan.assembly_plan import Plan, Step
+from assembly.plan.schedule import critical_path
 
 FIRST = datetime(2000, 1, 1, 9)
 

@@ -10,9 +10,9 @@ from pydantic import ValidationError
 
 from aag_cad.design import Design
 from aag_cad.design_sections import Site
-from aag_cad.export.ifc import IfcOptions, ifc_model
-from aag_cad.export.ifc_options import IFC_SCHEMAS, IfcSchema
-from aag_cad.export.ifc_site import degrees_minutes_seconds, true_north
+from aag_cad.export.ifc.model import IfcOptions, ifc_model
+from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcSchema
+from aag_cad.export.ifc.site import degrees_minutes_seconds, true_north
 from aag_cad.parts.model import Gridshell
 
 MEADOW = Site(

@@ -10,7 +10,7 @@ import segno
 from numpy.typing import NDArray
 from pypdf import PageObject, PdfReader
 
-from aag_cad.export.labels import labels_pdf
+from aag_cad.export.workshop.labels import labels_pdf
 from aag_cad.parts.model import Gridshell
 from aag_cad.shop.groups import all_planks, drill_groups
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from aag_cad.errors import FileError
-from aag_cad.export.optimise_report import report_html, write_report
+from aag_cad.export.office.optimise_report import report_html, write_report
 from aag_cad.web.goals import Goals, Iteration, Optimised, PointGoal, Reason
 from aag_cad.web.nets import largest_bending
 from aag_cad.web.quality import quality

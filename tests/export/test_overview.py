@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 from aag_cad.errors import FileError
-from aag_cad.export.overview import PIXELS_WIDE, overview_svg, png_of, write_overview
+from aag_cad.export.office.overview import PIXELS_WIDE, overview_svg, png_of, write_overview
 from aag_cad.parts.model import Gridshell
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -11,7 +11,7 @@ import pypdf
 import pytest
 
 from aag_cad.errors import DesignError
-from aag_cad.export.passports import passports_pdf, write_passports
+from aag_cad.export.workshop.passports import passports_pdf, write_passports
 from aag_cad.parts.model import Gridshell, Plank
 from aag_cad.parts.quantities import largest_twist, smallest_radius
 from aag_cad.shop.passports import REUSE_HEADER, passports

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from aag_cad.errors import FileError
-from aag_cad.export.prefabrication import (
+from aag_cad.export.workshop.prefabrication import (
     DRILLING_HEADER,
     PREFABRICATION_HEADER,
     write_drilling,

@@ -11,7 +11,7 @@ import pytest
 import rhino3dm
 
 from aag_cad.errors import FileError
-from aag_cad.export.rhino import write_3dm
+from aag_cad.export.cad.rhino import write_3dm
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell
 

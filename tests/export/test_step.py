@@ -24,8 +24,8 @@ from OCP.XCAFDoc import XCAFDoc_ShapeTool
 
 from aag_cad.design import Design
 from aag_cad.errors import FileError, SolidError
-from aag_cad.export.ifc_kinds import colour
-from aag_cad.export.step import Header, write_step
+from aag_cad.export.cad.step import Header, write_step
+from aag_cad.export.ifc.kinds import colour
 from aag_cad.parts.assemblies import beam_of_parts
 from aag_cad.parts.mesh import placed, shell_mesh
 from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, all_parts, ridge_parts, shell_parts
@@ -42,7 +42,7 @@ from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from test_step import excerpt_of
 from aag_cad.design import load_design
-from aag_cad.export.step import write_step
+from aag_cad.export.cad.step import write_step
 from aag_cad.pipeline import gridshell_of
 write_step(excerpt_of(gridshell_of(load_design("vault"))), Path(sys.argv[2]))
 """

@@ -21,7 +21,7 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from aag_cad.design import Design
 from aag_cad.errors import FileError
-from aag_cad.export.step_curves import curve_edge, surface_face, write_step_curves
+from aag_cad.export.cad.step_curves import curve_edge, surface_face, write_step_curves
 from aag_cad.geometry.revolution import AsymptoticChart
 from aag_cad.network.model import CurveNetwork
 from aag_cad.pipeline import web_of

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from aag_cad.design import Design
-from aag_cad.export.tables import HOLES_HEADER, PARTS_HEADER, write_holes_table, write_parts_table
+from aag_cad.export.office.tables import HOLES_HEADER, PARTS_HEADER, write_holes_table, write_parts_table
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.parts.quantities import largest_twist, mass, smallest_radius
 from aag_cad.pipeline import gridshell_of

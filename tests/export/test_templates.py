@@ -11,7 +11,7 @@ import pytest
 from pypdf import PageObject, PdfReader
 
 from aag_cad.errors import DesignError
-from aag_cad.export.templates import PAPERS, PaperName, part_stations, templates_pdf
+from aag_cad.export.workshop.drill_templates import PAPERS, PaperName, part_stations, templates_pdf
 from aag_cad.parts.model import Blank, CrossSection, EndCut, Gridshell, Hole, Plank
 from aag_cad.units import Floats
 

@@ -11,7 +11,7 @@ from aag_cad.audit import bolt_findings
 from aag_cad.design import Design, parse_design
 from aag_cad.errors import DesignError
 from aag_cad.findings import Finding
-from aag_cad.mechanics.fastener_spacing import (
+from aag_cad.mechanics.checks.fastener_spacing import (
     FastenerDistances,
     bolt_distances,
     screw_distances,

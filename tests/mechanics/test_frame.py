@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from Pynite import FEModel3D
 
-from aag_cad.mechanics.frame import FrameResult, held_part, lowest_modes, static_solution
-from aag_cad.mechanics.frame_factor import lowest_pairs, softest_pair
-from aag_cad.mechanics.frame_model import (
+from aag_cad.mechanics.frame.factor import lowest_pairs, softest_pair
+from aag_cad.mechanics.frame.model import (
     FrameElement,
     FrameError,
     FrameMaterial,
@@ -23,7 +22,8 @@ from aag_cad.mechanics.frame_model import (
     Support,
     rectangle_section,
 )
-from aag_cad.mechanics.frame_system import against_unknowns, frame_system, full_stiffness, mass_matrix
+from aag_cad.mechanics.frame.statics import FrameResult, held_part, lowest_modes, static_solution
+from aag_cad.mechanics.frame.system import against_unknowns, frame_system, full_stiffness, mass_matrix
 from aag_cad.units import Floats, Vector
 
 # Exact elements: what is left is rounding, amplified by the ratio of the stiffnesses in a model.

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from aag_cad.geometry.framed import FramedCurve, framed_curve
-from aag_cad.mechanics.lamella import lamella_stress, unrolled_bow
+from aag_cad.mechanics.checks.lamella import lamella_stress, unrolled_bow
 from aag_cad.parts.model import Blank, CrossSection, Gridshell, Plank, Timber
 from aag_cad.units import Floats, deg_per_m
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from aag_cad.geometry.framed import FramedCurve, framed_curve
-from aag_cad.mechanics.frame import lowest_modes, static_solution
-from aag_cad.mechanics.frame_model import FrameError, NodalLoad, Support, rectangle_section
-from aag_cad.mechanics.shell_model import SHORTEST_END, ShellFrame, shell_frame
+from aag_cad.mechanics.frame.model import FrameError, NodalLoad, Support, rectangle_section
+from aag_cad.mechanics.frame.shell import SHORTEST_END, ShellFrame, shell_frame
+from aag_cad.mechanics.frame.statics import lowest_modes, static_solution
 from aag_cad.parts.model import (
     Beam,
     Blank,

@@ -6,7 +6,7 @@ import pytest
 
 from aag_cad.audit import support_findings
 from aag_cad.design import Design
-from aag_cad.mechanics.supports import footing_checks, plan_area
+from aag_cad.mechanics.checks.supports import footing_checks, plan_area
 from aag_cad.parts.model import Footing, Gridshell, Shell, shell_parts
 from aag_cad.parts.quantities import mass
 

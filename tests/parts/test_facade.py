@@ -11,7 +11,7 @@ from aag_cad.design import Design, load_design
 from aag_cad.errors import DesignError
 from aag_cad.findings import Finding
 from aag_cad.geometry.framed import frames_at
-from aag_cad.mechanics.cover import FACADE_CHECKS
+from aag_cad.mechanics.checks.cover import FACADE_CHECKS
 from aag_cad.network.build import shell_network
 from aag_cad.network.model import CurveNetwork
 from aag_cad.network.ridge import ridge_distance

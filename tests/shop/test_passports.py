@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from aag_cad.errors import DesignError
 from aag_cad.geometry.framed import framed_curve
-from aag_cad.mechanics.lamella import lamella_stress
+from aag_cad.mechanics.checks.lamella import lamella_stress
 from aag_cad.parts.forming import formed_points, plank_axes
 from aag_cad.parts.model import Blank, CrossSection, Gridshell, Hole, Plank, Shell, Timber
 from aag_cad.parts.quantities import largest_twist, smallest_radius

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from aag_cad.design import Design
-from aag_cad.export.purchases import (
+from aag_cad.export.office.purchases import (
     CUTTING_HEADER,
     PURCHASES_HEADER,
     write_cutting,

@@ -1,0 +1,1 @@
+"""Solids, curves and meshes for other CAD programs."""

@@ -1,0 +1,148 @@
+"""Shapes of the products in IFC: triangulated or B-spline bodies, extruded fasteners, axes of planks, colours."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from aag_cad.export.ifc.brep import advanced_brep
+from aag_cad.export.ifc.frame import Entity, IfcModel
+from aag_cad.export.ifc.kinds import colour, colour_name
+from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
+from aag_cad.parts.forming import plank_axes
+from aag_cad.parts.mesh import MESH_SPACING, product_mesh
+from aag_cad.parts.model import Bolt, FlatBar, Part, Plank, Rod, Screw
+from aag_cad.parts.triangles import Mesh, regular_polygon
+from aag_cad.units import Floats
+
+_DIGITS = 3
+
+
+def _coordinates(points: Floats) -> list[list[float]]:
+    """Return points as lists, rounded to 1e-3 mm and without negative zeros."""
+    rows: list[list[float]] = (np.round(points, _DIGITS) + 0.0).tolist()
+    return rows
+
+
+def welded(mesh: Mesh) -> Mesh:
+    """Return a closed mesh with one vertex for all that are written as the same point, and without flattened faces.
+
+    Where the ends of two cuts of a sheet meet, its mesh has such vertices.
+    """
+    _, first, place = np.unique(np.round(mesh.vertices, _DIGITS), axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    faces = rank[place.reshape(-1)][mesh.faces]
+    a, b, c = faces.T
+    return Mesh(mesh.vertices[first[order]], faces[(a != b) & (b != c) & (c != a)])
+
+
+def face_set(model: IfcModel, mesh: Mesh) -> Entity:
+    """Return a closed mesh as a triangulated face set."""
+    points = model.file.create_entity("IfcCartesianPointList3D", _coordinates(mesh.vertices))
+    return model.file.create_entity("IfcTriangulatedFaceSet", points, None, True, (mesh.faces + 1).tolist())
+
+
+def faceted_brep(model: IfcModel, mesh: Mesh) -> Entity:
+    """Return a closed mesh as a faceted boundary representation: IFC2X3 has no face sets."""
+    new = model.file.create_entity
+    points = [new("IfcCartesianPoint", point) for point in _coordinates(mesh.vertices)]
+    faces = []
+    for face in mesh.faces.tolist():
+        bound = new("IfcFaceOuterBound", new("IfcPolyLoop", [points[corner] for corner in face]), True)
+        faces.append(new("IfcFace", [bound]))
+    return new("IfcFacetedBrep", new("IfcClosedShell", faces))
+
+
+def _hexagon(model: IfcModel, across_flats: float) -> Entity:
+    corners = _coordinates(regular_polygon(6, across_flats))
+    points = [model.file.create_entity("IfcCartesianPoint", corner) for corner in corners]
+    outline = model.file.create_entity("IfcPolyline", [*points, points[0]])
+    return model.file.create_entity("IfcArbitraryClosedProfileDef", "AREA", None, outline)
+
+
+def _circle(model: IfcModel, diameter: float) -> Entity:
+    # Only IFC2X3 demands a position, which is no other than the origin.
+    centre = model.file.create_entity("IfcCartesianPoint", (0.0, 0.0)) if model.schema == "IFC2X3" else None
+    position = centre and model.file.create_entity("IfcAxis2Placement2D", centre)
+    return model.file.create_entity("IfcCircleProfileDef", "AREA", None, position, diameter / 2.0)
+
+
+def extrusion(model: IfcModel, profile: Entity, low: float, high: float) -> Entity:
+    """Return a profile extruded along z between two heights."""
+    origin = model.file.create_entity("IfcCartesianPoint", (0.0, 0.0, low))
+    up = model.file.create_entity("IfcDirection", (0.0, 0.0, 1.0))
+    at = model.file.create_entity("IfcAxis2Placement3D", origin)
+    return model.file.create_entity("IfcExtrudedAreaSolid", profile, at, up, high - low)
+
+
+def _threaded_solids(model: IfcModel, pieces: Iterable[BoltPiece]) -> list[Entity]:
+    """Return the pieces of a bolt or threaded rod, one upon the other, so that nothing overlaps."""
+    return [
+        extrusion(model, _hexagon(model, p.size) if p.hexagonal else _circle(model, p.size), p.low, p.high)
+        for p in pieces
+    ]
+
+
+def _body(model: IfcModel, part: Part) -> tuple[str, list[Entity]]:
+    """Return the representation type and the items of a part's product."""
+    match part:
+        case Bolt():
+            return "SweptSolid", _threaded_solids(model, bolt_pieces(part))
+        case Rod():
+            return "SweptSolid", _threaded_solids(model, rod_pieces(part))
+        case Screw():
+            return "SweptSolid", [extrusion(model, _circle(model, part.diameter), 0.0, part.length)]
+        case _ if model.options.geometry == "brep" and isinstance(part, FlatBar):
+            return "AdvancedBrep", [advanced_brep(model, part)]
+        case _ if model.schema == "IFC2X3":
+            return "Brep", [faceted_brep(model, welded(product_mesh(part)))]
+        case _:
+            return "Tessellation", [face_set(model, welded(product_mesh(part)))]
+
+
+def _axis(model: IfcModel, plank: Plank) -> Entity:
+    """Return the centre line of a formed plank through the centres of the rings of its body."""
+    count = max(2, int(np.ceil(plank.blank.length / MESH_SPACING)) + 1)
+    centres = plank_axes(plank, np.linspace(0.0, plank.blank.length, count))[0]
+    if model.schema == "IFC2X3":
+        corners = [model.file.create_entity("IfcCartesianPoint", point) for point in _coordinates(centres)]
+        return model.file.create_entity("IfcPolyline", corners)
+    points = model.file.create_entity("IfcCartesianPointList3D", _coordinates(centres))
+    return model.file.create_entity("IfcIndexedPolyCurve", points)
+
+
+def surface_style(model: IfcModel, part: Part) -> Entity:
+    """Return the surface style of a part's family, as the schema assigns it to items."""
+    rgb = model.file.create_entity("IfcColourRgb", None, *(round(value, 4) for value in colour(part)))
+    see_through = () if model.schema == "IFC2X3" else (0.0,)
+    shading = model.file.create_entity("IfcSurfaceStyleShading", rgb, *see_through)
+    style = model.file.create_entity("IfcSurfaceStyle", colour_name(part), "BOTH", [shading])
+    return style if model.schema != "IFC2X3" else model.file.create_entity("IfcPresentationStyleAssignment", [style])
+
+
+def representation_maps(model: IfcModel, part: Part, style: Entity) -> list[Entity]:
+    """Return the maps of a product: its body, and for planks their axis; every item carries the style itself."""
+    kind, items = _body(model, part)
+    for item in items:
+        model.file.create_entity("IfcStyledItem", item, [style])
+    shapes = [model.file.create_entity("IfcShapeRepresentation", model.body, "Body", kind, items)]
+    if isinstance(part, Plank):
+        axis = _axis(model, part)
+        shapes.append(model.file.create_entity("IfcShapeRepresentation", model.axis, "Axis", "Curve3D", [axis]))
+    return [model.file.create_entity("IfcRepresentationMap", model.identity, shape) for shape in shapes]
+
+
+def mapped_shape(model: IfcModel, maps: tuple[Entity, ...], unmoved: Entity) -> Entity:
+    """Return the shape of one occurrence: the type's maps where they are; ``unmoved`` is the identity operator."""
+    shapes = []
+    for source in maps:
+        drawn = source.MappedRepresentation
+        item = model.file.create_entity("IfcMappedItem", source, unmoved)
+        shapes.append(
+            model.file.create_entity(
+                "IfcShapeRepresentation", drawn.ContextOfItems, drawn.RepresentationIdentifier,
+                "MappedRepresentation", [item],
+            )
+        )  # fmt: skip
+    return model.file.create_entity("IfcProductDefinitionShape", None, None, shapes)

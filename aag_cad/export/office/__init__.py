@@ -1,0 +1,1 @@
+"""Tables, purchases, summary, plan files, pictures and reports."""

@@ -1,0 +1,118 @@
+"""The files of a plan: what is done, when, in which order, in which segments; the booklets and the graph."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
+from typing import TypeAlias
+
+import networkx as nx
+
+from aag_cad.design_making import Crew
+from aag_cad.export.office.tables import write_locking_table, write_segment_tables
+from aag_cad.files import csv_text, write_text
+from aag_cad.parts.model import Gridshell
+from assembly.booklet.calendar import write_calendar
+from assembly.booklet.gantt import gantt_svg
+from assembly.booklet.graph_page import graph_html
+from assembly.booklet.pdf import write_booklets
+from assembly.graph.files import graph_json, graphml
+from assembly.graph.gridshell_graph import assembly_graph
+from assembly.locking.order import locking_svg, plot_words
+from assembly.pictures.laying_plan import laying_rows
+from assembly.plan.assembly_plan import Plan, plan_json
+from assembly.plan.planned import Planned
+from assembly.plan.schedule import Schedule, schedule_csv
+from assembly.transport.graph_groups import partition_graph
+from assembly.transport.search import Limits
+
+LAYING_HEADER = ("shell", "mark", "what", "x_mm", "y_mm", "end_x_mm", "end_y_mm")
+GROUPS_HEADER = ("segment", "parts", "mass_kg", "marks")
+
+
+@dataclass(frozen=True)
+class Planning:
+    """What the files of a plan are written from."""
+
+    planned: Planned
+    gridshell: Gridshell
+    crew: Crew
+
+
+def write_schedule(plan: Plan, schedule: Schedule, title: str, crew: Crew, folder: Path) -> None:
+    """Write the schedule as table and chart and, if the crew has a first working day, as calendar."""
+    write_text(folder / "tables" / "schedule.csv", schedule_csv(plan, schedule))
+    write_text(folder / "schedule.svg", gantt_svg(plan, schedule, title))
+    if crew.start is not None:
+        write_calendar(plan, schedule, date.fromisoformat(crew.start), folder / "schedule.ics", crew.days_per_week)
+
+
+def _laying_table(planning: Planning) -> str:
+    """Return where every member and stud lies on the floor, shell by shell, for setting out with tapes."""
+    flat, language = planning.planned.flat, planning.planned.plan.language
+    shells = [shell for shell in planning.gridshell.shells if shell.mark in flat]
+    rows = ((shell.mark, *row) for shell in shells for row in laying_rows(shell, flat[shell.mark], language))
+    return csv_text(LAYING_HEADER, rows)
+
+
+def _write_plan(planning: Planning, folder: Path) -> None:
+    write_text(folder / "plan.json", plan_json(planning.planned.plan))
+    write_text(folder / "disassembly.json", plan_json(planning.planned.down))
+    write_text(folder / "tables" / "laying.csv", _laying_table(planning))
+
+
+def _write_schedule(planning: Planning, folder: Path) -> None:
+    planned = planning.planned
+    write_schedule(planned.plan, planned.schedule, planning.gridshell.title, planning.crew, folder)
+
+
+def _write_locking(planning: Planning, folder: Path) -> None:
+    orders = planning.planned.locking
+    write_locking_table(orders, folder / "tables" / "locking.csv")
+    write_text(folder / "locking.svg", locking_svg(orders[0], plot_words(planning.planned.plan.language)))
+
+
+def _write_segments(planning: Planning, folder: Path) -> None:
+    tables = folder / "tables"
+    write_segment_tables(planning.planned.segmentation, tables / "segments.csv", tables / "splices.csv")
+
+
+def _write_sequence(planning: Planning, folder: Path) -> None:
+    write_booklets(planning.planned, planning.gridshell, folder)
+
+
+def _write_graph(planning: Planning, folder: Path) -> None:
+    graph = assembly_graph(planning.gridshell)
+    write_text(folder / "graph.json", graph_json(graph))
+    write_text(folder / "graph.graphml", graphml(graph))
+
+
+PlanWriter: TypeAlias = Callable[[Planning, Path], None]
+PLAN_WRITERS: dict[str, PlanWriter] = {
+    "plan": _write_plan,
+    "schedule": _write_schedule,
+    "locking": _write_locking,
+    "segments": _write_segments,
+    "sequence": _write_sequence,
+    "graph": _write_graph,
+}
+
+
+def write_graph_groups(graph: "nx.MultiGraph[str]", limits: Limits, folder: Path) -> None:
+    """Write the groups of parts of any graph that fit a transport, with their masses.
+
+    PlanError if a part alone is too heavy.
+    """
+    rows = []
+    for number, group in enumerate(partition_graph(graph, limits), start=1):
+        mass = sum(float(graph.nodes[mark]["mass_kg"]) for mark in group)
+        rows.append((str(number), str(len(group)), f"{mass:.1f}", " ".join(sorted(group))))
+    write_text(folder / "tables" / "segments.csv", csv_text(GROUPS_HEADER, rows))
+
+
+def write_graph_plan(graph: "nx.MultiGraph[str]", plan: Plan, schedule: Schedule, crew: Crew, folder: Path) -> None:
+    """Write the files of the plan of any graph of parts: plan, schedule, page for phones, and the graph as GraphML."""
+    write_text(folder / "plan.json", plan_json(plan))
+    write_schedule(plan, schedule, plan.name, crew, folder)
+    write_text(folder / "sequence.html", graph_html(plan, schedule, graph))
+    write_text(folder / "graph.graphml", graphml(graph))

@@ -1,0 +1,148 @@
+"""Adhesive labels as PDF, one for every plank and every coupled beam, by the template ``printouts/labels.typ``.
+
+Two by seven on A4, each 99.1 x 38.1 mm, a common sheet. The picture of a blank shows the face that the label goes on.
+"""
+
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import typst
+
+from aag_cad.files import write_bytes
+from aag_cad.parts.marks import parse_mark, shell_of
+from aag_cad.parts.model import Beam, Gridshell, Plank, Shell
+from aag_cad.resources import template
+from aag_cad.shop.groups import DrillGroup, all_planks, drawn_face, drill_groups
+from aag_cad.units import Floats
+from assembly.booklet.qr import qr_svg
+from assembly.drawing.outline import Outline, shell_outline
+
+KEY_WIDTH, KEY_HEIGHT = 30.0, 21.0
+_KEY_MARGIN = 0.8
+_KEY_POINTS = 5
+_LAYERS = {-1: "inner", 0: "middle", 1: "outer"}
+
+
+def qr_content(gridshell: Gridshell, mark: str) -> str:
+    """Return what the QR code of a label says: the project's name and the mark."""
+    return f"{gridshell.name} {mark}"
+
+
+def _few(line: Floats) -> list[list[float]]:
+    """Return a line by a few of its points: enough for a picture of 30 mm."""
+    chosen = np.linspace(0, len(line) - 1, min(len(line), _KEY_POINTS)).round().astype(int)
+    return [[round(float(x), 2), round(float(y), 2)] for x, y in line[chosen]]
+
+
+def _key_outline(shell: Shell) -> Outline:
+    """Return a shell seen from outside, small enough for the corner of a label."""
+    outline = shell_outline(shell, KEY_WIDTH, _KEY_MARGIN)
+    if outline.height <= KEY_HEIGHT:
+        return outline
+    return shell_outline(shell, KEY_WIDTH * KEY_HEIGHT / outline.height, _KEY_MARGIN)
+
+
+def _key(shell: Shell, outline: Outline) -> dict[str, Any]:
+    """Return the small drawing of a shell, seen from outside, as SVG in mm: the lines of its beams and flat planks."""
+    marks = [beam.mark for beam in shell.beams] + [plank.mark for plank in shell.planks if not plank.beam]
+    lines = "".join("M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in _few(outline.lines[mark])) for mark in sorted(marks))
+    svg = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{outline.width:.3f}mm" height="{outline.height:.3f}mm" '
+        f'viewBox="0 0 {outline.width:.3f} {outline.height:.3f}">'
+        f'<path d="{lines}" fill="none" stroke="#a6a6a6" stroke-width="0.12"/></svg>'
+    )
+    return {"width": outline.width, "height": outline.height, "svg": svg}
+
+
+def _blank(plank: Plank) -> list[list[Any]]:
+    """Return the picture of a blank: dots at fractions of the length and of the width, from the start and the top."""
+    length, width = plank.blank.length, plank.blank.section.width
+    return [[hole.station / length, 0.5 - hole.offset / width, hole.use == "bolt"] for hole in plank.blank.holes]
+
+
+def _joints(beam: Beam) -> list[list[Any]]:
+    """Return the picture of a beam: a dot for each joint, filled for those on studs."""
+    families = [(joint, parse_mark(joint.joint).family) for joint in beam.joints]
+    return [[joint.station / beam.curve.length, 0.5, family == "N"] for joint, family in families]
+
+
+def _plank_label(gridshell: Gridshell, plank: Plank, group: DrillGroup, outline: Outline) -> dict[str, Any]:
+    section = plank.blank.section
+    (member,) = (member for member in group.members if member.mark == plank.mark)
+    return {
+        "mark": plank.mark,
+        "shell": shell_of(plank.mark),
+        "line": _few(outline.lines[plank.mark]),
+        "picture": _blank(plank),
+        "facts": [
+            f"{plank.blank.length:.1f} x {section.width:g} x {section.thickness:g} mm",
+            f"{plank.family} · {_LAYERS[plank.layer]} layer",
+            f"template {group.mark} · {member.laid}",
+        ],
+        "note": f"stick at START on {drawn_face(plank)}",
+        "qr": qr_svg(qr_content(gridshell, plank.mark)),
+    }
+
+
+def _beam_label(gridshell: Gridshell, beam: Beam, lengths: dict[str, float], outline: Outline) -> dict[str, Any]:
+    left, right = (lengths[mark] for mark in beam.planks)
+    return {
+        "mark": beam.mark,
+        "shell": shell_of(beam.mark),
+        "line": _few(outline.lines[beam.mark]),
+        "picture": _joints(beam),
+        "facts": [
+            f"coupled beam, {len(beam.joints)} joints",
+            f"L {left:.1f} · R {right:.1f} mm",
+            f"{beam.family} · {_LAYERS[beam.layer]} layer",
+        ],
+        "note": "stick at START, outer edge of plank L; dots: studs, rings: blocks",
+        "qr": qr_svg(qr_content(gridshell, beam.mark)),
+    }
+
+
+def _group_of(groups: Iterable[DrillGroup]) -> dict[str, DrillGroup]:
+    return {member.mark: group for group in groups for member in group.members}
+
+
+def _mark(label: dict[str, Any]) -> str:
+    return str(label["mark"])
+
+
+def labels_data(gridshell: Gridshell) -> dict[str, Any]:
+    """Return the data that the labels are made from: first all planks, then all beams, each sorted by mark."""
+    outlines = {shell.mark: _key_outline(shell) for shell in gridshell.shells}
+    group_of = _group_of(drill_groups(all_planks(gridshell)))
+    planks, beams = [], []
+    for shell in gridshell.shells:
+        outline = outlines[shell.mark]
+        lengths = {plank.mark: plank.blank.length for plank in shell.planks}
+        planks += [_plank_label(gridshell, plank, group_of[plank.mark], outline) for plank in shell.planks]
+        beams += [_beam_label(gridshell, beam, lengths, outline) for beam in shell.beams]
+    return {
+        "title": gridshell.title,
+        "keys": {shell.mark: _key(shell, outlines[shell.mark]) for shell in gridshell.shells},
+        "labels": [*sorted(planks, key=_mark), *sorted(beams, key=_mark)],
+    }
+
+
+def labels_pdf(gridshell: Gridshell) -> bytes:
+    """Return the labels as PDF; the same gridshell gives the same bytes."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "data.json").write_text(json.dumps(labels_data(gridshell), ensure_ascii=False), encoding="utf-8")
+        main = folder / "labels.typ"
+        shutil.copyfile(template("printouts", "labels.typ"), main)
+        pdf: bytes = typst.compile(str(main), root=str(folder), ignore_system_fonts=True, format="pdf")
+    return pdf
+
+
+def write_labels(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
+    """Write the labels of all planks and beams as an A4 PDF file; FileError if it cannot be written."""
+    write_bytes(path, labels_pdf(gridshell))

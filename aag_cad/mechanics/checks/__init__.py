@@ -1,0 +1,1 @@
+"""Checks by formula: planks, fasteners, cover, supports."""

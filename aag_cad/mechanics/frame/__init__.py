@@ -1,0 +1,1 @@
+"""The frame engine, and a shell as a frame."""

@@ -1,0 +1,133 @@
+"""Which part goes with what: the pieces of every beam, stud, edge plank and geodesic of a shell, by mark."""
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from aag_cad.parts.assemblies import beam_of_parts
+from aag_cad.parts.model import Joint, JointKind, Part, Shell, shell_parts
+from assembly.base.errors import PlanError
+
+Group: TypeAlias = Literal["beams", "studs", "edges", "outside", "inside", "feet", "standing", "cover"]
+
+
+# What is fixed on the site, when the shell is stiff.
+_LATER: dict[JointKind, Group] = {"footing": "feet", "foot": "standing", "cover": "cover"}
+
+
+@dataclass(frozen=True)
+class Kit:
+    """Marks of parts by what they are added with.
+
+    ``beams``: planks, blocks and block bolts by beam. ``studs``: bolts by stud. ``edges``: screws, straps and the bolts
+    of straps by edge plank. ``outside`` and ``inside``: screws by geodesic, by the side that they are driven from.
+    ``feet``: footings, threaded rods and shoes. ``standing``: bolts of the shoes. ``cover``: blocks on geodesics,
+    mullions, strips, clamping bars and the screws of all these.
+    """
+
+    beams: dict[str, tuple[str, ...]]
+    studs: dict[str, tuple[str, ...]]
+    edges: dict[str, tuple[str, ...]]
+    lower_edges: tuple[str, ...]
+    outside: dict[str, tuple[str, ...]]
+    inside: dict[str, tuple[str, ...]]
+    feet: tuple[str, ...]
+    standing: tuple[str, ...]
+    cover: tuple[str, ...]
+
+
+def _refuse_strays(shell: Shell, kit: Kit) -> None:
+    groups = (*kit.beams.values(), *kit.studs.values(), *kit.edges.values(), *kit.outside.values())
+    placed = {mark for group in (*groups, *kit.inside.values()) for mark in group}
+    placed |= {*kit.studs, *kit.edges, *kit.outside, *kit.feet, *kit.standing, *kit.cover}
+    strays = sorted({part.mark for part in shell_parts(shell)} - placed)
+    if strays:
+        raise PlanError(
+            f"{', '.join(strays[:5])}{' and more' if len(strays) > 5 else ''}: {len(strays)} parts that no joint of "
+            f"{shell.mark} names, so that nobody knows when to add them; allowed 0: name them in a joint"
+        )
+
+
+def driven_from_outside(shell: Shell) -> set[str]:
+    """Return the screws whose heads lie on the outer side."""
+    normals = {mark: np.array(joint.normal) for joint in shell.joints for mark in joint.fasteners}
+    return {
+        screw.mark
+        for screw in shell.screws
+        if screw.mark in normals and float(np.array(screw.frame.z) @ normals[screw.mark]) < 0.0
+    }
+
+
+def _homes(shell: Shell, block_beam: dict[str, str]) -> dict[tuple[Group, str], list[str]]:
+    """Return the fasteners by what they are added with: a group of the kit and the mark of a piece in it."""
+    families = {plank.mark: plank.family for plank in shell.planks}
+    bolts, studs = {bolt.mark for bolt in shell.bolts}, {stud.mark for stud in shell.studs}
+    outer = driven_from_outside(shell)
+    straps = {strap.mark for strap in shell.straps}
+
+    def home(joint: Joint, fastener: str) -> tuple[Group, str] | None:
+        if joint.kind in _LATER:
+            return _LATER[joint.kind], ""
+        hub = next((mark for mark in joint.members if mark in studs or mark in block_beam), "")
+        if hub in studs:
+            return "studs", hub
+        if hub and fastener in bolts:
+            return "beams", block_beam[hub]
+        flat = sorted((families[mark], mark) for mark in joint.members if families.get(mark) in ("E", "G"))
+        if not flat:
+            return None
+        family, mark = flat[0]
+        return ("edges" if family == "E" else "outside" if fastener in outer else "inside"), mark
+
+    homes: dict[tuple[Group, str], list[str]] = defaultdict(list)
+    for joint in shell.joints:
+        for fastener in (*(mark for mark in joint.members if mark in straps), *joint.fasteners):
+            found = home(joint, fastener)
+            if found is not None:
+                homes[found].append(fastener)
+    return homes
+
+
+def _marks(parts: Iterable[Part]) -> tuple[str, ...]:
+    return tuple(part.mark for part in parts)
+
+
+def shell_kit(shell: Shell) -> Kit:
+    """Return what goes with what in a shell; PlanError with the marks of parts that no joint names."""
+    home = beam_of_parts(shell)
+    block_beam = {block.mark: home[block.mark] for block in shell.blocks if block.mark in home}
+    homes = _homes(shell, block_beam)
+
+    def group(name: Group, marks: Iterable[str]) -> dict[str, tuple[str, ...]]:
+        return {mark: tuple(homes.get((name, mark), ())) for mark in marks}
+
+    covering = {mark for joint in shell.joints if joint.kind == "cover" for mark in joint.members}
+    blocks: dict[str, list[str]] = defaultdict(list)
+    for block in shell.blocks:
+        blocks[block_beam.get(block.mark, "")].append(block.mark)
+    bolts = group("beams", (beam.mark for beam in shell.beams))
+    edges = [plank.mark for plank in shell.planks if plank.family == "E"]
+    flat = [plank.mark for plank in shell.planks if plank.family == "G"]
+    footed = {mark for joint in shell.joints if joint.kind == "foot" for mark in joint.members}
+    kit = Kit(
+        beams={beam.mark: (*beam.planks, *blocks[beam.mark], *bolts[beam.mark]) for beam in shell.beams},
+        studs=group("studs", (stud.mark for stud in shell.studs)),
+        edges=group("edges", edges),
+        lower_edges=tuple(mark for mark in edges if mark in footed),
+        outside=group("outside", flat),
+        inside=group("inside", flat),
+        feet=(*_marks(shell.footings), *homes.get(("feet", ""), ()), *_marks(shell.shoes)),
+        standing=tuple(homes.get(("standing", ""), ())),
+        cover=(
+            *(mark for mark in blocks[""] if mark in covering),
+            *_marks(shell.mullions),
+            *_marks(shell.strips),
+            *_marks(shell.clamps),
+            *homes.get(("cover", ""), ()),
+        ),
+    )
+    _refuse_strays(shell, kit)
+    return kit

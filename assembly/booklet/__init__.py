@@ -1,0 +1,1 @@
+"""Pages for the crew: cards, booklet, page for telephones, chart, calendar."""

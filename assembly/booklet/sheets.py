@@ -1,0 +1,101 @@
+"""Sheets of the booklet that are no cards: maps of the marks, laying plans, locking, segments."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from aag_cad.parts.model import Gridshell, Shell
+from assembly.base.language import Language, say
+from assembly.base.mark_ranges import joined_ranges
+from assembly.base.names import figure
+from assembly.locking.order import LockingOrder, locking_svg, locking_table, plot_words
+from assembly.pictures.label_map import MAP_SIZE, label_map_svg
+from assembly.pictures.layer_legend import layer_legend_svg
+from assembly.pictures.laying_plan import laying_header, laying_plan_svg, laying_rows
+from assembly.pictures.segment_picture import segment_svg
+from assembly.plan.planned import Planned
+from assembly.transport.segment_sheet import segment_cards
+from assembly.transport.segments import Segmentation
+
+# The joints on each map: those that a crew looks for on the whole shell, and the many blocks on one of their own.
+_MAPS = (("N", "F", "R"), ("K",))
+# The first stands above the legend on an upright page, at nine tenths of this size (tenths of a mm).
+_MAP_SIZES = ((2000.0, 1660.0), MAP_SIZE)
+
+Made = tuple[dict[str, Any], dict[str, str]]
+
+
+def alike(twins: Mapping[str, str]) -> dict[str, str]:
+    """Return for each first shell the names of all that are alike but for their number, as one text."""
+    groups: dict[str, list[str]] = {}
+    for shell, first in twins.items():
+        groups.setdefault(first, []).append(shell)
+    return {first: ", ".join(shells) for first, shells in groups.items()}
+
+
+def _firsts(gridshell: Gridshell, twins: Mapping[str, str]) -> Iterator[tuple[Shell, str]]:
+    names = alike(twins)
+    yield from ((shell, names[shell.mark]) for shell in gridshell.shells if shell.mark in names)
+
+
+def map_sheets(gridshell: Gridshell, twins: Mapping[str, str], language: Language) -> Made:
+    """Return the maps of the marks of each kind of shell, the first with the legend of the layers."""
+    sheets, pictures = [], dict[str, str]()
+    for shell, names in _firsts(gridshell, twins):
+        for i, families in enumerate(_MAPS):
+            picture, legend = f"map-{shell.mark}-{i}", f"layers-{shell.mark}" if i == 0 else ""
+            pictures[picture] = label_map_svg(shell, families, language, _MAP_SIZES[i])
+            if legend:
+                pictures[legend] = layer_legend_svg(shell, language)
+            sheets.append({
+                "title": say(language, "booklet.map.title" if i == 0 else "booklet.map.blocks", shells=names),
+                "note": say(language, "booklet.map.note", prefix=shell.mark),
+                "picture": picture,
+                "legend": legend,
+            })  # fmt: skip
+    return {"maps": sheets}, pictures
+
+
+def laying_sheets(gridshell: Gridshell, planned: Planned, twins: Mapping[str, str]) -> Made:
+    """Return the flat laying plans with their coordinates, of members and of single points; and their pictures."""
+    sheets, pictures, language = [], dict[str, str](), planned.plan.language
+    for shell, names in _firsts(gridshell, twins):
+        if shell.mark not in planned.flat:
+            continue
+        state, order = planned.flat[shell.mark], planned.orders[shell.mark]
+        pictures[f"laying-{shell.mark}"] = laying_plan_svg(shell, state, order, language)
+        rows, head = laying_rows(shell, state, language), laying_header(language)
+        sheets.append({
+            "title": say(language, "booklet.laying.title", shells=names),
+            "table_title": say(language, "booklet.laying.table", shells=names),
+            "note": say(language, "booklet.laying.note"),
+            "picture": f"laying-{shell.mark}",
+            "members": {"head": list(head), "rows": [list(row) for row in rows if row[-1]]},
+            "points": {"head": [*head[:2], "x mm", "y mm"], "rows": [list(row[:4]) for row in rows if not row[-1]]},
+        })  # fmt: skip
+    return {"layings": sheets}, pictures
+
+
+def locking_sheets(orders: Sequence[LockingOrder], twins: Mapping[str, str], language: Language) -> Made:
+    """Return the locking order of each kind of shell as table and plot."""
+    names, sheets, pictures = alike(twins), [], dict[str, str]()
+    for order in (order for order in orders if order.shell in names):
+        pictures[f"locking-{order.shell}"] = locking_svg(order, plot_words(language))
+        price = figure(f"{100.0 * order.rule_price:.1f}", language)
+        sheets.append({
+            "title": say(language, "booklet.locking.title", shells=names[order.shell]),
+            "picture": f"locking-{order.shell}",
+            "table": locking_table(order, language),
+            "price": say(language, "booklet.locking.price", price=price) if order.edges_first else "",
+            "hoists": say(language, "booklet.locking.hoists", joints=joined_ranges(order.hoists)),
+        })  # fmt: skip
+    return {"lockings": sheets}, pictures
+
+
+def segment_sheets(gridshell: Gridshell, segmentation: Segmentation, language: Language) -> Made:
+    """Return the sheets of all segments, one each, with their pictures."""
+    sheets, pictures = [], dict[str, str]()
+    for segment, card in zip(segmentation.segments, segment_cards(segmentation, language), strict=True):
+        name = f"segment-{segment.name.replace('.', '-')}"
+        pictures[name] = segment_svg(gridshell, segmentation, segment, language)
+        sheets.append(card | {"picture": name})
+    return {"segments": sheets}, pictures

@@ -1,0 +1,1 @@
+"""Independent walks over a plan."""

@@ -1,0 +1,121 @@
+"""A second opinion on the plan of a graph: it is walked through step by step, without asking who planned it."""
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import networkx as nx
+
+from assembly.base.steps import Plan
+
+_HOLDING = ("bolt", "screw", "threaded rod")
+
+
+def _nodes(graph: "nx.MultiGraph[str]") -> Mapping[str, Mapping[str, Any]]:
+    nodes: Mapping[str, Mapping[str, Any]] = graph.nodes
+    return nodes
+
+
+def _flat(node: Mapping[str, Any]) -> bool:
+    return node["kind"] == "plank" or "start" in node
+
+
+def _once(plan: Plan, graph: "nx.MultiGraph[str]") -> Iterator[str]:
+    """Yield the parts that are in no step though no finding names them, in several steps, or not in the graph."""
+    seen: dict[str, str] = {}
+    for step in plan.steps:
+        for mark in step.marks:
+            if mark not in graph:
+                yield f"{mark}: step {step.id} adds it, but the graph has no such part"
+            elif mark in seen:
+                yield f"{mark}: added by step {seen[mark]} and again by step {step.id}"
+            seen[mark] = step.id
+    excused = {mark for finding in plan.findings if finding.severity == "error" for mark in finding.mark.split(", ")}
+    for mark in sorted(set(graph) - set(seen)):
+        if mark not in excused and _nodes(graph)[mark].get("beam") not in excused:
+            yield f"{mark}: in no step, and no finding says why"
+
+
+def _ancestors(plan: Plan) -> tuple[dict[str, int], dict[str, int], list[str]]:
+    """Return the bit of each step, the bits of all that must be done before it, and what is wrong with its waiting."""
+    bits, before, faults = dict[str, int](), dict[str, int](), list[str]()
+    for i, step in enumerate(plan.steps):
+        if step.id in bits:
+            faults.append(f"step {step.id}: the id stands twice")
+        if step.number != i + 1:
+            faults.append(f"step {step.id}: number {step.number}, but it is the {i + 1}th")
+        mask = 0
+        for other in step.predecessors:
+            if other in bits:
+                mask |= bits[other] | before[other]
+            else:
+                faults.append(f"step {step.id}: waits for {other}, which does not come before it")
+        bits[step.id], before[step.id] = 1 << i, mask
+    return bits, before, faults
+
+
+def _buried(plan: Plan, graph: "nx.MultiGraph[str]", bits: dict[str, int], before: dict[str, int]) -> Iterator[str]:
+    """Yield the planks that would have to go under one that may lie already, by a step that does not slide them in."""
+    step_of = {mark: step for step in plan.steps for mark in step.marks}
+    for a, b, edge in graph.edges(data=True):
+        if edge["kind"] != "crossing" or edge.get("above") == "" or a not in step_of or b not in step_of:
+            continue
+        layers = {mark: _nodes(graph)[mark].get("layer") or 0 for mark in (a, b)}
+        upper = edge.get("above") or max((a, b), key=lambda mark: layers[mark])
+        lower = b if upper == a else a
+        below, over = step_of[lower], step_of[upper]
+        if bits[below.id] & before[over.id]:
+            continue
+        if below.phase == "slide" and bits[over.id] & before[below.id]:
+            continue
+        yield f"{lower}: step {below.id} puts it under {upper}, which step {over.id} may have laid before"
+
+
+def _unheld(plan: Plan, graph: "nx.MultiGraph[str]", bits: dict[str, int], before: dict[str, int]) -> Iterator[str]:
+    """Yield the parts that are put in before the planks that they are tied to, and fasteners before any member."""
+    step_of = {mark: step for step in plan.steps for mark in step.marks}
+    for step in plan.steps:
+        done = before[step.id] | bits[step.id]
+        for mark in (mark for mark in step.marks if mark in graph and not _flat(_nodes(graph)[mark])):
+            home, holding = _nodes(graph)[mark].get("beam"), _nodes(graph)[mark]["kind"] in _HOLDING
+            for other in sorted(graph[mark]):
+                node = _nodes(graph)[other]
+                # What is put together with a beam is fixed to that beam; the others come to it.
+                needed = node.get("beam") == home if home else _flat(node) or (holding and node["kind"] not in _HOLDING)
+                if needed and (other not in step_of or not bits[step_of[other].id] & done):
+                    yield f"{mark}: step {step.id} puts it in before {other} is there"
+
+
+def _blocked(plan: Plan, graph: "nx.MultiGraph[str]", bits: dict[str, int], before: dict[str, int]) -> Iterator[str]:
+    """Yield the slides that come when a plank on their way may be fastened already: the others must lie loose."""
+    tied: dict[str, list[tuple[str, str]]] = defaultdict(list)
+    for step in (step for step in plan.steps if step.phase == "join"):
+        for mark in step.marks:
+            for other in graph[mark]:
+                tied[other].append((mark, step.id))
+    for step in (step for step in plan.steps if step.phase == "slide"):
+        for mark in step.marks:
+            ways = {other: [edge["kind"] for edge in edges.values()] for other, edges in graph[mark].items()}
+            for other in sorted(other for other, kinds in ways.items() if "crossing" in kinds):
+                for fastener, earlier in sorted(tied[other]):
+                    if not bits[step.id] & before[earlier]:
+                        yield f"{mark}: slid in by step {step.id}, but step {earlier} may fasten {other} by {fastener}"
+
+
+def check_graph_plan(plan: Plan, graph: "nx.MultiGraph[str]", people: int | None = None) -> list[str]:
+    """Return what is wrong with the plan of a graph; nothing if it can be done as it stands, also side by side.
+
+    Each part once; no step before what it waits for; no plank under one that lies unless it is slid in; nothing put in
+    before the planks that it is tied to; the planks on the way of a slide loose; crews of 1 to ``people``.
+    """
+    bits, before, faults = _ancestors(plan)
+    faults += _once(plan, graph)
+    if faults:
+        return faults
+    faults += _buried(plan, graph, bits, before)
+    faults += _unheld(plan, graph, bits, before)
+    faults += _blocked(plan, graph, bits, before)
+    for step in plan.steps:
+        if step.crew < 1 or (people is not None and step.crew > people):
+            faults.append(f"step {step.id}: {step.crew} people, allowed 1 to {people or 'any'}")
+    return faults

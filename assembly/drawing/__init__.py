@@ -1,0 +1,1 @@
+"""Lines and shapes on paper; knows no plan."""

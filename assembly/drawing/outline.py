@@ -1,0 +1,128 @@
+"""Shells as they lie on a sheet: outlines of their planks and places of their joints, y down."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from aag_cad.geometry.surface import unit
+from aag_cad.parts.mesh import frame_matrix
+from aag_cad.parts.model import Blade, Gridshell, Joint, Part, Shell, shell_parts
+from aag_cad.units import Floats, Vector
+from assembly.base.shell_axes import View, elevation_view, shell_view, vault_view
+from assembly.drawing.part_outlines import Flat, piece_outline
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """What is drawn of some shells, in units of the sheet: outlines and lines (n, 2), points (2,).
+
+    ``planks`` run from the lowest layer to the highest, ``pieces`` are the other parts that are drawn; ``lines`` are
+    centre lines of planks, beams and pieces from their start, ``points`` those of the joints. ``scale`` is sheet units
+    a mm, ``origin`` the place of the coordinates' origin.
+    """
+
+    width: float
+    height: float
+    scale: float
+    origin: Floats
+    planks: dict[str, Floats]
+    lines: dict[str, Floats]
+    points: dict[str, Floats]
+    pieces: dict[str, Floats]
+
+
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Parts and joints that are moved together by a (4, 4) matrix; ``shell`` is None for those of the ridges."""
+
+    shell: Shell | None
+    matrix: Floats
+    parts: tuple[Part, ...]
+    joints: tuple[Joint, ...]
+
+
+def _group(shell: Shell, matrix: Floats, drawn: tuple[type[Part], ...]) -> _Group:
+    planks = sorted(shell.planks, key=lambda plank: (plank.layer, plank.mark))
+    pieces = sorted((p for p in shell_parts(shell) if isinstance(p, drawn)), key=lambda p: drawn.index(type(p)))
+    return _Group(shell, matrix, (*planks, *pieces), shell.joints)
+
+
+def _outline(
+    groups: Sequence[_Group], view: View, width: float, margin: float, around: Sequence[Vector] = (), only: str = ""
+) -> Outline:
+    """Return groups in a view on a sheet of a given width, with a margin all round.
+
+    The sheet holds all parts and the points ``around``; or only the parts whose marks match the pattern ``only``.
+    """
+
+    def on_sheet(matrix: Floats) -> Flat:
+        def flat(points: Floats) -> Floats:
+            seen = view(points @ matrix[:3, :3].T + matrix[:3, 3])
+            return np.column_stack([seen[:, 0], -seen[:, 1]])
+
+        return flat
+
+    seen = {part.mark: piece_outline(part, on_sheet(group.matrix)) for group in groups for part in group.parts}
+    joints = {j.mark: on_sheet(group.matrix)(np.array([j.point]))[0] for group in groups for j in group.joints}
+    held = [outline for mark, (outline, _) in seen.items() if re.match(only, mark)]
+    corners = np.concatenate([*held, *(on_sheet(np.eye(4))(np.array([point])) for point in around)])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    scale = (width - 2.0 * margin) / float(high[0] - low[0])
+    drawn = {mark: [(points - low) * scale + margin for points in pair] for mark, pair in seen.items()}
+    lines = {mark: line for mark, (_, line) in drawn.items()}
+    shells = [group.shell for group in groups if group.shell is not None]
+    for beam in (beam for shell in shells for beam in shell.beams):
+        lines[beam.mark] = (lines[beam.planks[0]] + lines[beam.planks[1]]) / 2.0
+    layers = {plank.mark: plank.layer for shell in shells for plank in shell.planks}
+    return Outline(
+        width=width,
+        height=float(high[1] - low[1]) * scale + 2.0 * margin,
+        scale=scale,
+        origin=margin - low * scale,
+        planks={mark: drawn[mark][0] for mark in sorted(layers, key=lambda mark: (layers[mark], mark))},
+        lines=lines,
+        points={mark: (point - low) * scale + margin for mark, point in joints.items()},
+        pieces={mark: outline for mark, (outline, _) in drawn.items() if mark not in layers},
+    )
+
+
+def shell_outline(shell: Shell, width: float, margin: float, drawn: tuple[type[Part], ...] = ()) -> Outline:
+    """Return a shell square on from outside, its foot at the bottom; ``drawn`` are kinds of pieces besides planks."""
+    return _outline([_group(shell, np.eye(4), drawn)], shell_view(shell), width, margin)
+
+
+def elevation_outline(shell: Shell, width: float, margin: float) -> Outline:
+    """Return a shell from its side, standing as it will stand."""
+    return _outline([_group(shell, np.eye(4), ())], elevation_view(shell), width, margin)
+
+
+def _placed(gridshell: Gridshell, drawn: tuple[type[Part], ...]) -> list[_Group]:
+    placed = [_group(shell, frame_matrix(shell.placement), drawn) for shell in gridshell.shells]
+    blades = gridshell.blades if Blade in drawn else ()
+    return [*placed, _Group(None, np.eye(4), blades, gridshell.joints)]
+
+
+def vault_outline(gridshell: Gridshell, width: float, margin: float, drawn: tuple[type[Part], ...] = ()) -> Outline:
+    """Return all shells in plan, the centre on the sheet; ``drawn`` are kinds of pieces besides planks."""
+    return _outline(_placed(gridshell, drawn), vault_view(), width, margin, around=((0.0, 0.0, 0.0),))
+
+
+def ridge_outline(gridshell: Gridshell, pair: Sequence[str], width: float, margin: float) -> Outline:
+    """Return the ridge between two shells from above with its blades, the crown to the left, cut off beside it.
+
+    ``pair`` are the marks of the two ridge planks.
+    """
+    matrices = {shell.mark: frame_matrix(shell.placement) for shell in gridshell.shells}
+    planks = {plank.mark: (plank, matrices[shell.mark]) for shell in gridshell.shells for plank in shell.planks}
+    ends = []
+    for plank, matrix in (planks[mark] for mark in pair):
+        points = plank.curve.points[[0, -1]] @ matrix[:3, :3].T + matrix[:3, 3]
+        ends.append(points[np.argsort(-points[:, 2])])
+    crown, side = np.mean(ends, axis=0)
+    along = unit((side - crown) * [1.0, 1.0, 0.0])
+    up = np.array([0.0, 0.0, 1.0])
+    view = View(np.array([along, np.cross(up, along), up]))
+    only = "|".join(re.escape(mark) for mark in pair)
+    return _outline(_placed(gridshell, (Blade,)), view, width, margin, only=rf"({only})$")

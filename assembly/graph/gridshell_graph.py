@@ -1,0 +1,217 @@
+"""The gridshell as a graph: every part a node, every joint the edges between the parts that meet in it."""
+
+from collections.abc import Iterator, Mapping
+from itertools import combinations, product
+from typing import NotRequired, TypedDict
+
+import networkx as nx
+import numpy as np
+
+from aag_cad.parts.assemblies import beam_of_parts
+from aag_cad.parts.marks import parse_mark, shell_of
+from aag_cad.parts.mesh import frame_matrix
+from aag_cad.parts.model import (
+    UNMOVED,
+    ClampingBar,
+    Frame,
+    Gridshell,
+    Joint,
+    Mullion,
+    Part,
+    Plank,
+    Shell,
+    Strap,
+    Strip,
+    all_parts,
+    ridge_parts,
+    shell_parts,
+)
+from aag_cad.parts.products import part_frame
+from aag_cad.parts.quantities import kind, mass, sizes
+from aag_cad.units import Floats, Vector, vector
+from assembly.graph.faults import EdgeKind
+from assembly.graph.layers import stacked_planks
+
+_BY_FASTENER: dict[str, EdgeKind] = {"B": "bolted", "W": "screwed", "T": "seated"}
+_BY_JOINT: dict[str, EdgeKind] = {
+    "AA": "bolted", "AG": "screwed", "boundary": "screwed", "foot": "bolted", "footing": "seated", "ridge": "bolted",
+    "blade": "bladed", "cover": "screwed",
+}  # fmt: skip
+
+
+class PartNode(TypedDict):
+    """What a node of the graph carries; ``position`` is in vault coordinates, mm; ``layer`` is None between layers.
+
+    ``kind`` is the word of the part lists (``aag_cad.parts.quantities.kind``), ``beam`` the mark of the coupled beam
+    that the part is put together with, or "". What is laid on the floor, a plank, has in addition: ``start`` and
+    ``end`` of its centre line (vault coordinates, mm); whether it stands ``upright`` on the surface; ``depth_mm``, its
+    size along the surface normal; ``min_radius_mm``, to which it can be bent flat-ways; and, only in graphs from
+    elsewhere, ``slides``: whether it may be slid in, which else all do that do not stand upright.
+    """
+
+    kind: str
+    family: str
+    shell: str
+    beam: str
+    layer: int | None
+    mass_kg: float
+    length_mm: float
+    position: Vector
+    start: NotRequired[Vector]
+    end: NotRequired[Vector]
+    upright: NotRequired[bool]
+    depth_mm: NotRequired[float]
+    min_radius_mm: NotRequired[float]
+    slides: NotRequired[bool]
+
+
+class JointEdge(TypedDict):
+    """What an edge carries: how its two parts are joined, and the mark and kind of the joint.
+
+    ``crossing``: one plank lies over another, ``above`` is the mark of the upper one ("" where they meet end to end),
+    ``below_mm`` and ``above_mm`` the stations of the joint along the lower and the upper one (end to end: along the
+    first and the second mark). ``coupled``: plank of a beam and block in its gap. ``bolted``, ``screwed``: by or to
+    the hub of the joint. ``seated``: shoe and rod on their concrete block. ``bladed``: ridge plank and blade.
+    """
+
+    kind: EdgeKind
+    joint: str
+    joint_kind: str
+    above: NotRequired[str]
+    below_mm: NotRequired[float]
+    above_mm: NotRequired[float]
+
+
+def part_point(part: Part) -> Floats:
+    """Return a point (3,) in the middle of a part, in the coordinates that the part is given in.
+
+    Of a bar and a plank it lies on the centre line, of a strip midway between its edges; else it is the frame's origin.
+    """
+    match part:
+        case Plank() | Mullion() | ClampingBar() | Strap():
+            return np.asarray(part.curve.point_spline(part.curve.length / 2.0), dtype=np.float64)
+        case Strip():
+            ends = [edge.point_spline(edge.length / 2.0) for edge in (part.left, part.right)]
+            return np.asarray(np.mean(ends, axis=0), dtype=np.float64)
+        case _:
+            frame = part_frame(part)
+            assert frame is not None
+            return np.array(frame.origin)
+
+
+def joint_of(mark: str) -> str:
+    """Return the mark of the joint that a bolt, screw or threaded rod belongs to."""
+    return mark.rpartition("-")[0]
+
+
+def _hub(joint: Joint) -> str:
+    """Return the member that the others are tied to: the one with the joint's mark, else its coupling block, or ""."""
+    if joint.mark in joint.members:
+        return joint.mark
+    return next((mark for mark in joint.members if parse_mark(mark).family == "K"), "")
+
+
+def _ties(joint: Joint, beams: Mapping[str, str]) -> Iterator[tuple[str, str, EdgeKind]]:
+    """Yield the pairs of parts that a joint ties together, and how.
+
+    ``beams`` gives the coupled beam of every plank, or "". A stud, coupling block, strap, shoe, concrete block or blade
+    is the hub that the others are tied to. Without one all members are tied pairwise, but for planks, whose crossings
+    are edges of their own, and the fasteners to the first member.
+    """
+    usual, hub = _BY_JOINT[joint.kind], _hub(joint)
+    for mark in joint.members:
+        if hub and mark != hub:
+            on_block = joint.kind in ("AG", "boundary") and beams.get(mark)
+            yield hub, mark, "coupled" if on_block else usual
+    if not hub:
+        for a, b in combinations(joint.members, 2):
+            if a not in beams or b not in beams:
+                yield a, b, usual
+    for fastener in joint.fasteners:
+        yield hub or joint.members[0], fastener, _BY_FASTENER[parse_mark(fastener).part[0]]
+
+
+def _crossings(shell: Shell) -> Iterator[tuple[str, str, JointEdge]]:
+    """Yield the planks that lie on one another, each pair of neighbours in height once, and those that meet."""
+    stations = {(p.mark, place.joint): place.station for p in shell.planks for place in p.joints}
+    for joint, lower, upper, lies in stacked_planks(shell):
+        for pair in product(lower, upper):
+            low, high = pair if lies else sorted(pair)
+            yield (
+                low,
+                high,
+                JointEdge(
+                    kind="crossing",
+                    joint=joint.mark,
+                    joint_kind=joint.kind,
+                    above=high if lies else "",
+                    below_mm=stations[low, joint.mark],
+                    above_mm=stations[high, joint.mark],
+                ),
+            )
+
+
+def _placed(points: Floats, placement: Frame) -> list[Vector]:
+    matrix = frame_matrix(placement)
+    return [vector(point) for point in points @ matrix[:3, :3].T + matrix[:3, 3]]
+
+
+def _add_planks(graph: "nx.MultiGraph[str]", shell: Shell, min_radius: float) -> None:
+    """Give the planks of a shell what the laying needs to know of them, and add their crossings."""
+    starts = _placed(np.array([plank.curve.points[0] for plank in shell.planks]).reshape(-1, 3), shell.placement)
+    ends = _placed(np.array([plank.curve.points[-1] for plank in shell.planks]).reshape(-1, 3), shell.placement)
+    for plank, start, end in zip(shell.planks, starts, ends, strict=True):
+        section = plank.blank.section
+        depth = section.width if plank.upright else section.thickness
+        graph.add_node(
+            plank.mark, start=start, end=end, upright=plank.upright, depth_mm=depth, min_radius_mm=min_radius
+        )
+    for a, b, edge in _crossings(shell):
+        graph.add_edge(a, b, key=edge["joint"], **edge)
+
+
+def _add_ties(graph: "nx.MultiGraph[str]", joints: tuple[Joint, ...], beams: Mapping[str, str]) -> None:
+    for joint in joints:
+        for a, b, how in _ties(joint, beams):
+            graph.add_edge(a, b, key=joint.mark, **JointEdge(kind=how, joint=joint.mark, joint_kind=joint.kind))
+
+
+def _add_parts(graph: "nx.MultiGraph[str]", gridshell: Gridshell, parts: tuple[Part, ...], shell: Shell | None) -> None:
+    homes = beam_of_parts(shell) if shell else {}
+    layers: dict[str, int] = {}
+    if shell:
+        of_beam = {beam.mark: beam.layer for beam in shell.beams}
+        layers |= {plank.mark: plank.layer for plank in shell.planks}
+        layers |= {block.mark: of_beam[homes[block.mark]] for block in shell.blocks if block.mark in homes}
+    points = np.array([part_point(part) for part in parts]).reshape(-1, 3)
+    for part, position in zip(parts, _placed(points, shell.placement if shell else UNMOVED), strict=True):
+        graph.add_node(
+            part.mark,
+            **PartNode(
+                kind=kind(part),
+                family=parse_mark(part.mark).family,
+                shell=shell_of(part.mark),
+                beam=homes.get(part.mark, ""),
+                layer=layers.get(part.mark),
+                mass_kg=mass(part, gridshell.timber),
+                length_mm=sizes(part)[0],
+                position=position,
+            ),
+        )
+
+
+def assembly_graph(gridshell: Gridshell) -> "nx.MultiGraph[str]":
+    """Return the graph of all parts (nodes by mark, ``PartNode``) and joints (edges by joint mark, ``JointEdge``).
+
+    Masses in kg, lengths, stations and positions in mm, any number of shells.
+    """
+    graph: nx.MultiGraph[str] = nx.MultiGraph(name=gridshell.name)
+    for shell in gridshell.shells:
+        _add_parts(graph, gridshell, shell_parts(shell), shell)
+    _add_parts(graph, gridshell, ridge_parts(gridshell), None)
+    for shell in gridshell.shells:
+        _add_planks(graph, shell, gridshell.timber.min_bending_radius)
+        _add_ties(graph, shell.joints, {plank.mark: plank.beam for plank in shell.planks})
+    _add_ties(graph, gridshell.joints, {})
+    assert len(graph) == len(all_parts(gridshell))
+    return graph

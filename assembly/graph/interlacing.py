@@ -1,0 +1,159 @@
+"""The order in which woven planks are laid, and which of them are slid in along their own axis between the others."""
+
+import math
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+import networkx as nx
+
+from aag_cad.findings import Finding
+from assembly.base.errors import PlanError
+from assembly.base.language import Language, say
+from assembly.graph.circles import circle_links, few_out, knots, part_of, relations
+from assembly.graph.faults import refuse_unlayable
+from assembly.graph.laying_units import EDGE_FAMILY, Crossing, crossings_of, units_of
+from assembly.graph.sliding import End, Hindrance, Sliding, Why, slidings
+
+__all__ = ["Crossing", "Interlacing", "Slide", "interlacing"]
+
+
+@dataclass(frozen=True)
+class Slide:
+    """A unit that is slid in when the others lie: with its other end first, from beyond ``end``.
+
+    ``free`` is the length of open floor beyond that end (infinite if nothing lies there), ``radius`` the smallest to
+    which it bends, mm (infinite if it stays straight); ``crossings`` are the joints in the order that it passes them.
+    """
+
+    unit: str
+    end: End
+    free: float
+    crossings: tuple[str, ...]
+    radius: float = math.inf
+
+
+@dataclass(frozen=True)
+class Interlacing:
+    """Who lies on whom, what must lie first, which units are slid in, in their order, and what cannot be laid.
+
+    ``precedence`` is acyclic and holds every unit but those ``left_out``: an edge leads from what must lie first to
+    what comes later; its ``joints`` say where. To a unit that is slid in, edges lead from all that it passes.
+    """
+
+    crossings: tuple[Crossing, ...]
+    precedence: "nx.DiGraph[str]"
+    slides: tuple[Slide, ...]
+    findings: tuple[Finding, ...]
+    left_out: tuple[str, ...]
+
+
+def _precedence(lying: "nx.DiGraph[str]", slides: Iterable[str], left_out: Collection[str]) -> "nx.DiGraph[str]":
+    """Return what must lie before what: what lies below, and before a slide all that it passes."""
+    turn = {mark: i + 1 for i, mark in enumerate(slides)}
+    where: dict[tuple[str, str], set[str]] = defaultdict(set)
+    for lower in lying:
+        for upper, edge in lying[lower].items():
+            if lower not in left_out and upper not in left_out:
+                swapped = turn.get(lower, 0) > turn.get(upper, 0)
+                where[(upper, lower) if swapped else (lower, upper)] |= set(edge["joints"])
+    graph: nx.DiGraph[str] = nx.DiGraph()
+    graph.add_nodes_from(mark for mark in lying if mark not in left_out)
+    for (first, then), joints in sorted(where.items()):
+        graph.add_edge(first, then, joints=tuple(sorted(joints)))
+    return graph
+
+
+def _slide(sliding: Sliding, crossings: Iterable[Crossing], in_place: Collection[str]) -> Slide:
+    passed = sorted(
+        (at.upper_mm, at.joint) if at.upper == sliding.unit else (at.lower_mm, at.joint)
+        for at in crossings
+        if sliding.unit in (at.lower, at.upper) and {at.lower, at.upper} - {sliding.unit} <= set(in_place)
+    )
+    joints = dict.fromkeys(joint for _, joint in (passed[::-1] if sliding.end == "end" else passed))
+    return Slide(sliding.unit, sliding.end, sliding.free, tuple(joints), sliding.radius)
+
+
+def _slides(
+    chosen: list[str], found: Mapping[str, Sliding], crossings: Iterable[Crossing], laid: Collection[str]
+) -> Iterator[Slide]:
+    """Yield the slides in their order; each passes what was laid and what was slid in before it."""
+    by_unit: dict[str, list[Crossing]] = defaultdict(list)
+    for crossing in crossings:
+        by_unit[crossing.lower].append(crossing)
+        by_unit[crossing.upper].append(crossing)
+    in_place = set(laid)
+    for unit in chosen:
+        yield _slide(found[unit], by_unit[unit], in_place)
+        in_place.add(unit)
+
+
+def _reason(language: Language, hindrance: Hindrance, marks: list[str]) -> str:
+    return say(
+        language,
+        f"graph.interlacing.{hindrance.why}",
+        marks=", ".join(marks),
+        found=f"{hindrance.found:.0f}",
+        needed=f"{hindrance.needed:.0f}",
+    )
+
+
+def _reasons(knot: Iterable[str], found: Mapping[str, Sliding], language: Language) -> Iterator[str]:
+    """Yield why the units of a knot cannot be slid in, those with the same figures in one sentence."""
+    told: dict[Hindrance, list[str]] = defaultdict(list)
+    for mark in knot:
+        for hindrance in found[mark].hindrances:
+            told[hindrance].append(mark)
+    order: tuple[Why, ...] = ("upright", "kept", "unknown", "radius", "length")
+    for hindrance in sorted(told, key=lambda h: (order.index(h.why), told[h])):
+        yield _reason(language, hindrance, told[hindrance])
+
+
+def _finding(knot: "nx.DiGraph[str]", found: Mapping[str, Sliding], language: Language) -> Finding:
+    """Return the error that names a knot, a shortest circle in it with its joints, and what hinders its units."""
+    what = say(
+        language,
+        "graph.interlacing.circle",
+        links=circle_links(knot, language),
+        reasons="; ".join(_reasons(knot, found, language)),
+    )
+    remedy = say(language, "graph.interlacing.remedy")
+    return Finding("AAG951", "error", ", ".join(knot), what, 0.0, 1.0, "", remedy)
+
+
+def interlacing(
+    graph: "nx.MultiGraph[str]", language: Language = "en", later: Collection[str] | None = None
+) -> Interlacing:
+    """Return the order of laying the units of a graph and the slides that it needs; see ``docs/interlacing.md``.
+
+    The graph is that of a gridshell, of one of its shells or any other with the attributes of
+    ``assembly.graph.faults``; PlanError with its faults if it lacks them. ``later`` are units that do not lie on the
+    floor yet and so are in nobody's way, edge planks (family E) if it is None. A circle that no slide resolves is an
+    AAG951 in ``findings``.
+    """
+    refuse_unlayable(graph)
+    units = units_of(graph)
+    absent = {mark for mark, unit in units.items() if unit.family == EDGE_FAMILY} if later is None else set(later)
+    crossings, meetings = crossings_of(graph)
+    lying = relations(units, crossings)
+    tied = {mark for knot in knots(lying) for mark in knot}
+    found = slidings(sorted(tied), units, crossings, meetings, absent)
+    fixed = part_of(lying, {mark for mark in tied if found[mark].hindrances})
+    stuck = knots(fixed)
+    left_out = {mark for knot in stuck for mark in knot}
+    free = part_of(lying, tied - left_out)
+    able, families = set(found) - set(fixed), {mark: unit.family for mark, unit in units.items()}
+    chosen = [mark for knot in knots(free) for mark in few_out(part_of(free, knot), able, families)]
+    return Interlacing(
+        crossings=crossings,
+        precedence=_precedence(lying, chosen, left_out),
+        slides=tuple(_slides(chosen, found, crossings, set(units) - left_out - set(chosen))),
+        findings=tuple(_finding(part_of(fixed, knot), found, language) for knot in stuck),
+        left_out=tuple(sorted(left_out)),
+    )
+
+
+def refuse_left_out(found: Interlacing) -> None:
+    """Raise PlanError with all circles of a weave that no slide resolves, if there are any."""
+    if found.findings:
+        raise PlanError("\n".join(finding.text for finding in found.findings))

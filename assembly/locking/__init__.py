@@ -1,0 +1,1 @@
+"""The order in which geodesics lock a hoisted shell."""

@@ -1,0 +1,1 @@
+"""Which picture a step gets, and the drawings that need a plan or a layout."""

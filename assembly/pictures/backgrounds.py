@@ -1,0 +1,188 @@
+"""What the pictures of a plan are drawn on: outlines of shells alike only once, and what is in place at each step."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.mesh import frame_matrix
+from aag_cad.parts.model import (
+    ClampingBar,
+    Footing,
+    Gridshell,
+    Mullion,
+    Rod,
+    Shell,
+    Shoe,
+    Strap,
+    Strip,
+    all_parts,
+    shell_parts,
+)
+from aag_cad.units import Floats
+from assembly.base.language import Language
+from assembly.base.mark_ranges import short_mark
+from assembly.base.part_groups import shell_kit
+from assembly.base.steps import DOWN_PHASES, Plan, Step
+from assembly.drawing.outline import Outline, ridge_outline, shell_outline, vault_outline
+from assembly.graph.interlacing import Slide
+from assembly.pictures.segment_scenes import stood_segments
+from assembly.transport.segments import Segmentation
+
+PAGE_WIDTH = 1800.0
+SMALL_WIDTH = 880.0
+MARGIN = 50.0
+ON_SHELLS = (Strap, Mullion, Strip, ClampingBar)
+ON_GROUND = (Footing, Rod, Shoe)
+
+
+@dataclass(frozen=True, eq=False)
+class Sheets:
+    """The outlines that the pictures of a gridshell are drawn from, and what is in place before each step.
+
+    ``twins`` gives for each shell the first one that is alike but for its number; ``large`` and ``small`` are the
+    outlines of these. ``standing`` are the planks of the whole shells, ``stood``
+    the segments of cut ones, that stand on the site before each step; ``slides`` say how planks are slid in, by mark.
+    """
+
+    gridshell: Gridshell
+    twins: dict[str, str]
+    large: dict[str, Outline]
+    small: dict[str, Outline]
+    plan: Outline
+    ridges: dict[tuple[str, ...], Outline]
+    before: dict[str, frozenset[str]]
+    standing: dict[str, frozenset[str]]
+    stood: dict[str, tuple[str, ...]]
+    segmentation: Segmentation | None
+    slides: Mapping[str, Slide]
+    language: Language
+
+
+def _alike(one: Shell, other: Shell) -> bool:
+    """Return whether two shells have the same parts at the same places but for the shell's number in their marks."""
+    ours, theirs = shell_parts(one), shell_parts(other)
+    planks = zip(one.planks, other.planks, strict=False)
+    return (
+        [short_mark(part.mark) for part in ours] == [short_mark(part.mark) for part in theirs]
+        and all(a.curve == b.curve and a.blank.section == b.blank.section for a, b in planks)
+        and [short_mark(joint.mark) for joint in one.joints] == [short_mark(joint.mark) for joint in other.joints]
+        and bool(np.array_equal([j.point for j in one.joints], [j.point for j in other.joints]))
+    )
+
+
+def shell_twins(gridshell: Gridshell) -> dict[str, str]:
+    """Return for the mark of each shell that of the first shell which is alike but for its number."""
+    firsts: list[Shell] = []
+    twins: dict[str, str] = {}
+    for shell in gridshell.shells:
+        first = next((other for other in firsts if _alike(other, shell)), shell)
+        if first is shell:
+            firsts.append(shell)
+        twins[shell.mark] = first.mark
+    return twins
+
+
+def twin_step(step: Step, shell: str, twin: str) -> Step:
+    """Return a step as its twin's shell would have it: with that shell's number in all marks."""
+    if shell == twin:
+        return step
+    number = parse_mark(twin).shell
+
+    def moved(marks: Sequence[str]) -> tuple[str, ...]:
+        return tuple(twin_mark(mark, shell, number) for mark in marks)
+
+    return replace(
+        step, shell=twin, marks=moved(step.marks), assemblies=moved(step.assemblies), props=moved(step.props)
+    )
+
+
+def twin_mark(mark: str, shell: str, number: int) -> str:
+    """Return a mark with another shell's number in place of that of ``shell``; other marks as they are."""
+    return f"S{number}{mark.removeprefix(shell)}" if mark == shell or mark.startswith(f"{shell}-") else mark
+
+
+def _in_place(plan: Plan, gridshell: Gridshell) -> dict[str, frozenset[str]]:
+    """Return for each step id the parts that are in their places before it; those of a beam when it is laid."""
+    parts_of = {mark: marks for shell in gridshell.shells for mark, marks in shell_kit(shell).beams.items()}
+    in_beams = {mark for marks in parts_of.values() for mark in marks}
+    placed: set[str] = set()
+    found = {}
+    for step in plan.steps:
+        found[step.id] = frozenset(placed)
+        placed.update(mark for mark in step.marks if mark not in in_beams)
+        placed.update(mark for beam in step.assemblies for mark in parts_of.get(beam, ()))
+    return found
+
+
+def _still_there(plan: Plan, gridshell: Gridshell) -> dict[str, frozenset[str]]:
+    """Return for each step id of taking down the parts that are still in their places before it."""
+    parts_of = {mark: marks for shell in gridshell.shells for mark, marks in shell_kit(shell).beams.items()}
+    there = {part.mark for part in all_parts(gridshell)}
+    found = {}
+    for step in plan.steps:
+        found[step.id] = frozenset(there)
+        there.difference_update(step.marks)
+        there.difference_update(mark for beam in step.assemblies for mark in parts_of.get(beam, ()))
+    return found
+
+
+def _standing(plan: Plan, gridshell: Gridshell, down: bool) -> dict[str, frozenset[str]]:
+    """Return for each step id the planks of the shells that stand on the site before it, in whole or in part."""
+    planks = {shell.mark: {plank.mark for plank in shell.planks} for shell in gridshell.shells}
+    standing = set[str]().union(*planks.values()) if down else set[str]()
+    found = {}
+    for step in plan.steps:
+        found[step.id] = frozenset(standing)
+        moved = {mark for assembly in step.assemblies for mark in planks.get(assembly, ())}
+        if step.phase == "stand":
+            standing |= moved
+        if step.phase == "lift off":
+            standing -= moved
+    return found
+
+
+def ridge_planks(gridshell: Gridshell, pair: Sequence[str]) -> tuple[str, ...]:
+    """Return the edge planks of two shells that face each other, none where either has none."""
+    shells = {shell.mark: shell for shell in gridshell.shells}
+
+    def middles(mark: str) -> dict[str, Floats]:
+        matrix = frame_matrix(shells[mark].placement)
+        edges = [plank for plank in shells[mark].planks if plank.family == "E"]
+        points = {plank.mark: plank.curve.point_spline(plank.curve.length / 2.0) for plank in edges}
+        return {edge: matrix[:3, :3] @ point + matrix[:3, 3] for edge, point in points.items()}
+
+    ours, theirs = middles(pair[0]), middles(pair[1])
+    gaps = {(a, b): float(np.linalg.norm(ours[a] - theirs[b])) for a in sorted(ours) for b in sorted(theirs)}
+    return min((gap, ends) for ends, gap in gaps.items())[1] if gaps else ()
+
+
+def sheets_of(
+    plan: Plan, gridshell: Gridshell, segmentation: Segmentation | None = None, slides: Iterable[Slide] = ()
+) -> Sheets:
+    """Return all outlines, drawn once for all steps of a plan of putting together or of taking down.
+
+    ``segmentation`` is needed where shells stand in segments, ``slides`` where planks are slid in.
+    """
+    twins = shell_twins(gridshell)
+    firsts = [shell for shell in gridshell.shells if twins[shell.mark] == shell.mark]
+    down = any(step.phase in DOWN_PHASES for step in plan.steps)
+    return Sheets(
+        gridshell=gridshell,
+        twins=twins,
+        large={shell.mark: shell_outline(shell, PAGE_WIDTH, MARGIN, ON_SHELLS) for shell in firsts},
+        small={shell.mark: shell_outline(shell, SMALL_WIDTH, MARGIN) for shell in firsts},
+        plan=vault_outline(gridshell, PAGE_WIDTH * 0.8, MARGIN, ON_GROUND),
+        ridges={
+            step.assemblies: ridge_outline(gridshell, pair, PAGE_WIDTH, MARGIN)
+            for step in plan.steps
+            if step.phase in ("ridges", "open ridges") and (pair := ridge_planks(gridshell, step.assemblies))
+        },
+        before=_still_there(plan, gridshell) if down else _in_place(plan, gridshell),
+        standing=_standing(plan, gridshell, down),
+        stood=stood_segments(plan, segmentation),
+        segmentation=segmentation,
+        slides={slide.unit: slide for slide in slides},
+        language=plan.language,
+    )

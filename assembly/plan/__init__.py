@@ -1,0 +1,1 @@
+"""What is done when: putting together, taking down, durations, schedule, reasons."""

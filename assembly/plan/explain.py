@@ -1,0 +1,170 @@
+"""Why a part comes when it does: what must be there before it, what waits for it, what locks it, what time it has."""
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from difflib import get_close_matches
+
+import networkx as nx
+
+from assembly.base.errors import PlanError
+from assembly.base.language import Language, say, words_table
+from assembly.base.mark_ranges import joined_ranges
+from assembly.base.names import figure
+from assembly.base.steps import Plan, Step
+from assembly.graph.gridshell_graph import joint_of
+from assembly.locking.order import LockingOrder, LockingStep, frequency
+from assembly.plan.schedule import Schedule
+
+_MOST_SHOWN = 8
+# What a step may have to do with a part; the first that holds is said.
+_RELATIONS = ("under", "over", "joined", "fastened")
+
+
+def _beams(graph: "nx.MultiGraph[str]") -> dict[str, str]:
+    """Return the coupled beam of each part, or ""."""
+    return {mark: str(values.get("beam", "")) for mark, values in graph.nodes(data=True)}
+
+
+def step_of_parts(plan: Plan, graph: "nx.MultiGraph[str]") -> dict[str, Step]:
+    """Return the step in which each part comes to its place; parts of a coupled beam come when the beam is laid."""
+    at = {mark: step for step in plan.steps for mark in step.marks}
+    laid = {beam: step for step in plan.steps if step.phase in ("lay A1", "lay A2", "lay") for beam in step.assemblies}
+    return at | {mark: laid[beam] for mark, beam in _beams(graph).items() if beam in laid}
+
+
+def _piece(graph: "nx.MultiGraph[str]", mark: str) -> tuple[str, ...]:
+    """Return the parts of a mark: those of a coupled beam, or the part itself; PlanError if there is none."""
+    if mark in graph:
+        return (mark,)
+    parts = tuple(node for node, beam in _beams(graph).items() if beam == mark)
+    if not parts:
+        near = get_close_matches(mark, sorted({*graph, *_beams(graph).values()} - {""}), _MOST_SHOWN, 0.0)
+        raise PlanError(f"--explain {mark}: no part or beam has this mark; the nearest are {', '.join(near)}")
+    return parts
+
+
+def _neighbours(graph: "nx.MultiGraph[str]", parts: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Yield (relation, mark) of what meets some parts: it lies under or over them, or is joined to them."""
+    own, beam = set(parts), graph.nodes[parts[0]].get("beam", "")
+    for part in parts:
+        for _, other, edge in graph.edges(part, data=True):
+            home = graph.nodes[other].get("beam", "")
+            if other in own or (beam and home == beam):
+                continue
+            above = edge.get("above", "")
+            relation = "joined" if not above else "over" if above == other else "under"
+            yield relation, home or other
+
+
+def _around(
+    graph: "nx.MultiGraph[str]", parts: Sequence[str], at: Mapping[str, Step]
+) -> dict[tuple[int, str], list[str]]:
+    """Return what meets some parts by the number of the step in which it comes, and by relation."""
+    homes = {beam: mark for mark, beam in _beams(graph).items()}
+    found: dict[tuple[int, str], list[str]] = defaultdict(list)
+    for relation, mark in _neighbours(graph, parts):
+        step = at.get(mark) or at.get(homes.get(mark, ""))
+        if step is not None and mark not in found[step.number, relation]:
+            found[step.number, relation].append(mark)
+    return found
+
+
+def _fastened(
+    graph: "nx.MultiGraph[str]", parts: Sequence[str], plan: Plan, step: Step
+) -> dict[tuple[int, str], list[str]]:
+    """Return the fasteners at the joints of some parts by the number of the step that puts them in, if another one."""
+    joints = {joint for part in parts for _, _, joint in graph.edges(part, keys=True)}
+    found: dict[tuple[int, str], list[str]] = defaultdict(list)
+    for other in plan.steps:
+        marks = [mark for mark in other.marks if joint_of(mark) in joints and mark not in parts]
+        if other is not step and marks:
+            found[other.number, "fastened"] = marks
+    return found
+
+
+def _hertz(step: LockingStep, language: Language) -> str:
+    return figure(f"{frequency(step.eigenvalues[0]):.2f}", language)
+
+
+def _locked(mark: str, orders: Sequence[LockingOrder], language: Language) -> Iterator[str]:
+    """Yield when a flat plank is fixed in the locking order, and what that does."""
+    for order in orders:
+        for i, step in enumerate(order.steps):
+            if mark in step.marks:
+                before = order.steps[i - 1]
+                yield say(
+                    language, "explain.fixed", place=i, count=len(order.steps) - 1,
+                    before=before.soft_modes, after=step.soft_modes,
+                    low=_hertz(before, language), high=_hertz(step, language),
+                )  # fmt: skip
+
+
+def _line(plan: Plan, step: Step, around: Mapping[tuple[int, str], Sequence[str]], otherwise: str) -> str:
+    """Return the line about a step: the first relation that it has to a part, else that one waits for the other."""
+    for relation in _RELATIONS:
+        marks = around.get((step.number, relation), ())
+        if marks:
+            more = " …" if len(marks) > _MOST_SHOWN else ""
+            shown = f"{joined_ranges(marks[:_MOST_SHOWN])}{more}"
+            return say(plan.language, f"explain.{relation}", number=step.number, title=step.title, marks=shown)
+    return say(plan.language, f"explain.{otherwise}", number=step.number, title=step.title)
+
+
+def _reasons(plan: Plan, step: Step, around: Mapping[tuple[int, str], Sequence[str]], later: bool) -> list[str]:
+    """Return why a step cannot come earlier (or later), one line for each step that it touches."""
+    touched = {number for number, relation in around if later or relation != "fastened"}
+    found = []
+    for other in plan.steps:
+        if other.number > step.number if later else other.number < step.number:
+            linked = step.id in other.predecessors if later else other.id in step.predecessors
+            if linked or other.number in touched:
+                found.append(_line(plan, other, around, "awaited" if later else "waits"))
+    return found
+
+
+def _kind(kind: str, language: Language) -> str:
+    """Return the word for a kind of part; a kind that the tables do not know stands as it is."""
+    return say(language, f"explain.kinds.{kind}") if kind in words_table("explain")["kinds"] else kind
+
+
+def explanation(
+    graph: "nx.MultiGraph[str]",
+    plan: Plan,
+    mark: str,
+    schedule: Schedule | None = None,
+    locking: Sequence[LockingOrder] = (),
+) -> list[str]:
+    """Return why a part or beam comes when it does, one line each, in the plan's language.
+
+    ``graph`` is that of ``assembly.graph.gridshell_graph``. PlanError if no part has the mark, or no step handles it.
+    """
+    parts, language = _piece(graph, mark), plan.language
+    at, node = step_of_parts(plan, graph), graph.nodes[parts[0]]
+    made = next((step for step in plan.steps if parts[0] in step.marks), None)
+    step = at.get(parts[0])
+    if step is None:
+        raise PlanError(f"--explain {mark}: no step of the plan handles it; see the findings of the plan")
+    length = max(float(graph.nodes[part]["length_mm"]) for part in parts)
+    mass = figure(f"{sum(float(graph.nodes[part]['mass_kg']) for part in parts):.1f}", language)
+    what = _kind(str(node["kind"]), language)
+    lines = [say(language, "explain.part", mark=mark, kind=what, length=length, mass=mass)]
+    beam = node.get("beam", "")
+    if beam and beam != mark:
+        lines.append(say(language, "explain.of_beam", beam=beam))
+    if made is not None and made is not step:
+        lines.append(say(language, "explain.made", number=made.number, title=made.title, beam=beam))
+    lines.append(say(language, "explain.comes", number=step.number, title=step.title))
+    if step.phase == "slide":
+        lines.append(say(language, "explain.slid"))
+    around = _around(graph, parts, at) | _fastened(graph, parts, plan, step)
+    earlier = _reasons(plan, step, around, later=False)
+    lines += [say(language, "explain.before"), *(f"  {line}" for line in earlier)] if earlier else []
+    lines += [] if earlier else [say(language, "explain.first")]
+    later = _reasons(plan, step, around, later=True)
+    lines += [say(language, "explain.after"), *(f"  {line}" for line in later)] if later else []
+    lines += _locked(mark, locking, language)
+    if schedule is not None:
+        when = next(found for found in schedule.steps if found.id == step.id)
+        key = "explain.critical" if when.critical else "explain.slack"
+        lines.append(say(language, key, slack=when.slack))
+    return lines

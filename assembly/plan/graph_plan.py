@@ -1,0 +1,275 @@
+"""The plan of laying and joining any graph of parts and joints on the floor (``assembly.graph.faults``)."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import ceil, isfinite
+
+import networkx as nx
+
+from aag_cad.design_making import Minutes
+from aag_cad.errors import MarkError
+from aag_cad.findings import Finding
+from aag_cad.units import MM_PER_M
+from assembly.base.crew import Crew, crew_of, hands_for, lifting_findings, named_marks
+from assembly.base.language import Language, say, says
+from assembly.base.mark_ranges import short_mark
+from assembly.base.steps import Phase, Plan, Step
+from assembly.checks.graph_plan import check_graph_plan
+from assembly.graph.interlacing import Crossing, Interlacing, Slide, interlacing
+from assembly.graph.laying_units import Unit, units_of
+from assembly.laying.joining import Joining, joinings
+from assembly.laying.order import FlatOrder, flat_order_of, groups_of
+
+__all__ = ["check_graph_plan", "graph_durations", "graph_plan"]
+
+LAID_A_STEP = 7
+JOINTS_A_STEP = 24
+PAIR = 2
+_FEW = 4
+
+
+@dataclass(frozen=True)
+class _Task:
+    """What the steps are made from; ``kits`` are all parts of each unit, planks first, then its blocks and bolts."""
+
+    graph: "nx.MultiGraph[str]"
+    units: Mapping[str, Unit]
+    kits: Mapping[str, tuple[str, ...]]
+    woven: Interlacing
+    order: FlatOrder
+    weights: Mapping[str, tuple[float, float]]
+    crew: Crew
+    language: Language
+
+    def say(self, key: str, **figures: object) -> str:
+        """Return a text of the table ``plan`` in ``words/graph.toml``."""
+        return say(self.language, f"graph.plan.{key}", **figures)
+
+    def says(self, key: str) -> tuple[str, ...]:
+        """Return a list of texts of that table."""
+        return says(self.language, f"graph.plan.{key}")
+
+
+def _short(mark: str) -> str:
+    """Return a mark without its shell if it is one of ours, and any other as it is."""
+    try:
+        return short_mark(mark)
+    except MarkError:
+        return mark
+
+
+def _kits(graph: "nx.MultiGraph[str]", units: Mapping[str, Unit]) -> dict[str, tuple[str, ...]]:
+    laid = {part for unit in units.values() for part in unit.parts}
+    added: dict[str, list[str]] = defaultdict(list)
+    for mark in sorted(mark for mark in graph if mark not in laid):
+        added[graph.nodes[mark].get("beam", "")].append(mark)
+    return {mark: (*unit.parts, *added.get(mark, ())) for mark, unit in units.items()}
+
+
+def _weights(
+    graph: "nx.MultiGraph[str]", kits: Mapping[str, tuple[str, ...]], units: Mapping[str, Unit]
+) -> dict[str, tuple[float, float]]:
+    """Return (kg, mm) of every unit with its kit, and of every part that is not in one."""
+    masses = {mark: float(graph.nodes[mark]["mass_kg"]) for mark in graph}
+    single = sorted(set(graph) - {mark for kit in kits.values() for mark in kit})
+    found = {mark: (sum(masses[part] for part in kit), units[mark].length) for mark, kit in kits.items()}
+    return found | {mark: (masses[mark], float(graph.nodes[mark]["length_mm"])) for mark in single}
+
+
+def _step(task: _Task, name: str, phase: Phase, shell: str, pieces: Iterable[str], least: int = 1) -> Step:
+    """Return a step with its hands and tools, still without parts, words and number."""
+    weights = [task.weights[mark] for mark in pieces]
+    hands = hands_for(task.crew, max(kg for kg, _ in weights), max(long for _, long in weights))
+    tools = task.says(f"{phase}.tools")
+    return Step(
+        number=0,
+        id=f"{shell}.{name}" if shell else name,
+        phase=phase,
+        title="",
+        shell=shell,
+        marks=(),
+        assemblies=(),
+        tools=(*tools, task.say("lifting.gear")) if hands.gear else tools,
+        crew=max(hands.people, min(least, task.crew.people)),
+        predecessors=(),
+        instructions=(),
+    )
+
+
+def _laying(task: _Task, steps: dict[str, str]) -> Iterator[Step]:
+    """Yield the laying of runs in groups; ``steps`` learns the step of each unit."""
+    counts: dict[str, int] = defaultdict(int)
+    for group in (group for run in task.order.runs for group in groups_of(run, LAID_A_STEP)):
+        first = task.units[group[0]]
+        counts[first.shell] += 1
+        step = _step(task, f"lay.{counts[first.shell]}", "lay", first.shell, group)
+        below = sorted({low for unit in group for low in task.woven.precedence.predecessors(unit)})
+        beneath = sorted({task.units[unit].family for unit in below})
+        stack = "-".join(part for part in (first.shell, first.family) if part)
+        onto = named_marks(below) if "" in beneath else ", ".join(beneath)
+        steps |= dict.fromkeys(group, step.id)
+        yield replace(
+            step,
+            title=task.say("lay.title", marks=named_marks(group)),
+            marks=tuple(mark for unit in group for mark in task.kits[unit]),
+            assemblies=tuple(unit for unit in group if unit not in task.graph),
+            predecessors=tuple(dict.fromkeys(steps[unit] for unit in below if unit in steps)),
+            instructions=(
+                task.say("lay.stack", stack=stack, marks=", ".join(map(_short, group))),
+                task.say("lay.over", below=onto) if below else task.say("lay.floor"),
+                task.say("lay.loose"),
+            ),
+        )
+
+
+def _passed(task: _Task, slide: Slide, crossings: Iterable[Crossing]) -> str:
+    """Return the crossings of a slide in their order, and whether it lies over or under at each."""
+    turn = {joint: i for i, joint in enumerate(slide.crossings)}
+    listed = sorted((turn[at.joint], at.lower, at.upper, at.joint) for at in crossings if at.joint in turn)
+    texts = []
+    for _, lower, upper, joint in listed:
+        side, other = ("over", lower) if upper == slide.unit else ("under", upper)
+        texts.append(task.say(f"slide.{side}", joint=_short(joint), other=_short(other)))
+    return ", ".join(texts)
+
+
+def _sliding(task: _Task, steps: dict[str, str]) -> Iterator[Step]:
+    """Yield the slides, one step each."""
+    counts: dict[str, int] = defaultdict(int)
+    at_unit: dict[str, list[Crossing]] = defaultdict(list)
+    for crossing in task.woven.crossings:
+        at_unit[crossing.lower].append(crossing)
+        at_unit[crossing.upper].append(crossing)
+    for slide in task.order.slides:
+        unit = task.units[slide.unit]
+        counts[unit.shell] += 1
+        step = _step(task, f"slide.{counts[unit.shell]}", "slide", unit.shell, (unit.mark,), PAIR)
+        before = sorted(task.woven.precedence.predecessors(unit.mark))
+        free = task.say("slide.free", free=slide.free) if isfinite(slide.free) else task.say("slide.open")
+        end = task.say(f"slide.{slide.end}")
+        steps[unit.mark] = step.id
+        yield replace(
+            step,
+            title=task.say("slide.title", marks=named_marks((unit.mark,))),
+            marks=task.kits[unit.mark],
+            assemblies=(unit.mark,) if unit.mark not in task.graph else (),
+            predecessors=tuple(dict.fromkeys(steps[other] for other in before if other in steps)),
+            instructions=(
+                task.say("slide.place", end=end, needed=unit.length, free=free),
+                task.say("slide.way", crossings=_passed(task, slide, at_unit[unit.mark])),
+                task.say("slide.lift"),
+            ),
+        )
+
+
+def _joined(task: _Task, group: Sequence[Joining]) -> str:
+    names = [_short(joining.joint) for joining in group]
+    if len(names) <= _FEW:
+        return ", ".join(names)
+    return task.say("several", count=len(names), first=names[0], last=names[-1])
+
+
+def _joining(task: _Task, found: Sequence[Joining], steps: dict[str, str]) -> Iterator[Step]:
+    """Yield the joining along the path; ``steps`` gives the step of each unit, and learns those of other parts.
+
+    A step waits for all that its parts are tied to, and for the slides past these: they need the others loose.
+    """
+    home = {mark: unit for unit, kit in task.kits.items() for mark in kit}
+    slid = {slide.unit for slide in task.order.slides}
+    past: dict[str, list[str]] = defaultdict(list)
+    for unit in sorted(slid):
+        for other in task.woven.precedence.predecessors(unit):
+            past[other].append(unit)
+    runs: dict[tuple[str, str], list[Joining]] = defaultdict(list)
+    for joining in found:
+        runs[joining.shell, joining.kind].append(joining)
+    counts: dict[str, int] = defaultdict(int)
+    for (shell, _), run in runs.items():
+        for group in groups_of(run, JOINTS_A_STEP):
+            counts[shell] += 1
+            marks = tuple(mark for joining in group for mark in joining.marks)
+            step = _step(task, f"join.{counts[shell]}", "join", shell, marks, PAIR)
+            tied = sorted({other for mark in marks for other in task.graph[mark]} - set(marks))
+            units = dict.fromkeys(home[other] for other in tied if other in home)
+            waits = [*units, *(unit for other in units for unit in past[other]), *(o for o in tied if o not in home)]
+            steps |= dict.fromkeys(marks, step.id)
+            order = ", ".join(_short(joining.joint) for joining in group)
+            yield replace(
+                step,
+                title=task.say("join.title", joints=_joined(task, group)),
+                marks=marks,
+                predecessors=tuple(sorted({steps[other] for other in waits if other in steps} - {step.id})),
+                instructions=(task.say("join.order", joints=order), task.say("join.how")),
+            )
+
+
+def _numbered(task: _Task, steps: Sequence[Step]) -> tuple[Step, ...]:
+    """Return steps with their numbers, the last one of each phase of a shell with what to check."""
+    last = {(step.shell, step.phase): step.id for step in steps}
+    return tuple(
+        replace(
+            step,
+            number=number,
+            hold=task.say(f"{step.phase}.hold") if last[step.shell, step.phase] == step.id else "",
+        )
+        for number, step in enumerate(steps, start=1)
+    )
+
+
+def _waiting(task: _Task, marks: Sequence[str]) -> tuple[Finding, ...]:
+    if not marks:
+        return ()
+    what, remedy = task.say("waiting.what"), task.say("waiting.remedy")
+    return (Finding("AAG956", "error", ", ".join(marks), what, float(len(marks)), 0.0, "", remedy),)
+
+
+def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float, language: Language = "en") -> Plan:
+    """Return the plan of laying a graph on the floor, sliding in what is woven and joining it loosely.
+
+    For a crew of ``people`` who lift at most ``lift_limit`` kg each. Runs are laid in groups of at most 7, each slide
+    is a step of its own, and at most 24 joints are joined in a step. ``findings`` name what cannot be laid (AAG951) or
+    put in (AAG956), which is in no step, and what is heavy (AAG955). PlanError if the graph has faults, a part is tied
+    to nothing, or the crew is empty.
+    """
+    crew, woven, units = crew_of(people, lift_limit), interlacing(graph, language, later=()), units_of(graph)
+    order, kits = flat_order_of(graph, woven, later=()), _kits(graph, units)
+    task = _Task(graph, units, kits, woven, order, _weights(graph, kits, units), crew, language)
+    placed = {mark: unit for unit, kit in kits.items() for mark in kit}
+    found, waiting = joinings(graph, units, placed, woven.left_out, woven.crossings)
+    step_of: dict[str, str] = {}
+    steps = [*_laying(task, step_of), *_sliding(task, step_of), *_joining(task, found, step_of)]
+    lifted = {mark: weight for mark, weight in task.weights.items() if mark not in woven.left_out}
+    findings = (*woven.findings, *_waiting(task, waiting), *lifting_findings(lifted, crew, language))
+    return Plan(str(graph.name), _numbered(task, steps), language, findings)
+
+
+# Keys of ``Minutes`` by the words for kinds; what the table does not know takes the time of a bolt.
+_MINUTES = {
+    "stud": "stud", "coupling block": "block", "bolt": "bolt", "screw": "screw", "strap": "strap", "shoe": "shoe",
+    "threaded rod": "rod", "concrete block": "footing", "mullion": "mullion", "strip": "strip",
+    "clamping bar": "clamp", "blade": "blade",
+}  # fmt: skip
+
+
+def graph_durations(plan: Plan, graph: "nx.MultiGraph[str]", minutes: Minutes) -> dict[str, int]:
+    """Return the minutes that each step of a graph's plan takes its people, by its id: whole ones, at least 1.
+
+    The times are those of ``[crew.minutes]``. A beam counts as made where it is laid; what is slid in is carried and
+    pushed, twice its length. A part of a kind without a time of its own takes that of a bolt.
+    """
+    times: dict[str, float] = minutes.model_dump()
+    units = units_of(graph)
+    unit_of = {part: unit for unit in units.values() for part in unit.parts}
+    found = {}
+    for step in plan.steps:
+        laid = dict.fromkeys(unit_of[mark].mark for mark in step.marks if mark in unit_of)
+        metres = sum(units[unit].length for unit in laid) / MM_PER_M
+        work = metres * minutes.carry * (2.0 if step.phase == "slide" else 1.0)
+        for unit in laid:
+            beam = unit not in graph
+            work += minutes.beam + minutes.plank * len(units[unit].parts) if beam else minutes.geodesic
+        for mark in (mark for mark in step.marks if mark not in unit_of):
+            work += times[_MINUTES.get(graph.nodes[mark]["kind"], "bolt")]
+        found[step.id] = max(1, ceil((step.crew * minutes.setup + work) / step.crew - 1.0 / 60.0))
+    return found

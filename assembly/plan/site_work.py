@@ -1,0 +1,217 @@
+"""The work on site: feet, standing shells, segments joined again, ridges, cover (paper section 3.2)."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from aag_cad.parts.marks import parse_mark, shell_of
+from aag_cad.parts.model import Gridshell, Shell
+from assembly.base.language import Language, say
+from assembly.base.mark_ranges import joined_ranges, short_mark
+from assembly.base.part_groups import Kit, shell_kit
+from assembly.graph.gridshell_graph import joint_of
+from assembly.locking.order import LockingOrder
+from assembly.plan.parting import brace_extras, seam_extras
+from assembly.plan.shell_work import EVERYONE, PAIR, Work
+from assembly.transport.seams import Seam, foot_joints, segments_of, standing_order
+from assembly.transport.segments import Segment, Segmentation
+
+
+@dataclass(frozen=True)
+class _Site:
+    """What the work on site is made from."""
+
+    gridshell: Gridshell
+    segmentation: Segmentation | None
+    locking: dict[str, LockingOrder]
+    language: Language
+
+    def say(self, key: str, **figures: object) -> str:
+        """Return a title or a phrase of ``words/site.toml``."""
+        return say(self.language, f"site.{key}", **figures)
+
+
+def ridge_pairs(gridshell: Gridshell) -> tuple[tuple[str, str], ...]:
+    """Return the pairs of shells that meet along a ridge: those that blades or joints join, else neighbours."""
+    joined = {frozenset(f"S{digit}" for digit in parse_mark(blade.mark).family[1:]) for blade in gridshell.blades}
+    joined |= {frozenset(shell_of(mark) for mark in joint.members) - {""} for joint in gridshell.joints}
+    pairs = {(min(pair), max(pair)) for pair in joined if len(pair) == PAIR}
+    if not pairs:
+        marks = [shell.mark for shell in gridshell.shells]
+        ring = zip(marks, (*marks[1:], marks[0]), strict=True)
+        pairs = {(min(a, b), max(a, b)) for a, b in ring if a != b}
+    return tuple(sorted(pairs))
+
+
+def _crown_props(site: _Site, shell: Shell) -> tuple[str, ...]:
+    """Return the props that a stiff shell needs until it leans on its neighbours, by the locking order."""
+    order = site.locking.get(shell.mark)
+    return tuple(prop.joint for prop in order.released.props) if order else ()
+
+
+def _prop_notes(site: _Site, shell: Shell) -> tuple[str, ...]:
+    order = site.locking.get(shell.mark)
+    if order is None or not order.released.props:
+        return ()
+    at = short_mark(order.released.at)
+    return (site.say("stand.props", sag=order.released.displacement, joint=at),)
+
+
+def _standing_notes(site: _Site, segment: Segment, beside: Sequence[Seam], others: Sequence[str]) -> tuple[str, ...]:
+    """Return how a segment is set down beside those that stand."""
+    if not beside:
+        after = (site.say("stand.first", segment=segment.name, others=", ".join(others)),)
+        return (*after, site.say("stand.alone", segment=segment.name))
+    names = [next(iter({seam.keeper, seam.bare} - {segment.name})) for seam in beside]
+    gaps = [round(seam.gap) for seam in beside]
+    if len(beside) > 1:
+        return (site.say("stand.closing", b=names[0], c=names[1], gap=sum(gaps)),)
+    return (site.say("stand.beside", b=names[0], gap=gaps[0], line=short_mark(beside[0].line)),)
+
+
+def _split_standing(shell: Shell, kit: Kit, own: Sequence[Segment]) -> dict[str, tuple[str, ...]]:
+    """Return the bolts of the shoes by segment: those of its geodesics' feet."""
+    homes = {joint: segment.name for segment in own for joint in foot_joints(shell, segment)}
+    groups: dict[str, list[str]] = {segment.name: [] for segment in own}
+    for mark in kit.standing:
+        groups[homes.get(joint_of(mark), own[0].name)].append(mark)
+    return {name: tuple(marks) for name, marks in groups.items()}
+
+
+def _segment_works(site: _Site, shell: Shell, kit: Kit, feet: str) -> Iterator[Work]:
+    """Yield the standing of the segments of a cut shell, each joined to its neighbour before the next one comes."""
+    order = list(standing_order(shell, site.segmentation))
+    own = [segment for segment, _ in order]
+    bolts, crown = _split_standing(shell, kit, own), _crown_props(site, shell)
+    under = {joint: next((s.name for s in own if joint in s.parts), own[0].name) for joint in crown}
+    open_seams = Counter(name for _, beside in order for seam in beside for name in (seam.keeper, seam.bare))
+    named = {segment.name: segment for segment in own}
+    before: tuple[str, ...] = (feet, f"{shell.mark}.divide")
+    for i, (segment, beside) in enumerate(order):
+        standing = bolts[segment.name]
+        notes = _standing_notes(site, segment, beside, [other.name for other in own[i + 1 :]])
+        held = tuple(joint for joint in crown if under[joint] == segment.name)
+        stand = Work(
+            f"site.stand.{segment.name}",
+            "stand",
+            site.say("stand.segment" if standing else "stand.raised", segment=segment.name),
+            after=before,
+            marks=standing,
+            assemblies=(shell.mark,),
+            least_crew=EVERYONE,
+            props=tuple(dict.fromkeys((*segment.props, *held))),
+            notes=(*notes, *(_prop_notes(site, shell) if held else ())),
+        )
+        yield stand
+        before = (stand.id,)
+        for seam in beside:
+            open_seams.subtract((seam.keeper, seam.bare))
+            whole = [named[name] for name in (seam.keeper, seam.bare) if not open_seams[name]]
+            bare = (extra for other in whole for extra in brace_extras(site.language, other, "splice"))
+            splice = Work(
+                f"site.splice.{seam.keeper}.{seam.bare}",
+                "splice",
+                site.say("splice.title", a=seam.keeper, b=seam.bare, line=short_mark(seam.line)),
+                after=before,
+                assemblies=(shell.mark,),
+                least_crew=2 * PAIR,
+                extras=(*seam_extras(site.language, seam, "splice"), *bare),
+            )
+            yield splice
+            before = (splice.id,)
+
+
+def _standing(site: _Site, shell: Shell, feet: str) -> tuple[Work, ...]:
+    """Return the work by which a shell, whole or in segments, comes to stand on its feet."""
+    kit = shell_kit(shell)
+    if segments_of(site.segmentation, shell.mark):
+        return tuple(_segment_works(site, shell, kit, feet))
+    work = Work(
+        f"site.stand.{shell.mark}",
+        "stand",
+        site.say("stand.shell", shell=shell.mark),
+        after=(feet, f"{shell.mark}.tighten"),
+        marks=kit.standing,
+        assemblies=(shell.mark,),
+        least_crew=EVERYONE,
+        props=_crown_props(site, shell),
+        notes=_prop_notes(site, shell),
+    )
+    return (work,)
+
+
+def _props_off(site: _Site, works: tuple[Work, ...]) -> tuple[Work, ...]:
+    """Return the standing of a cut shell that meets no other: its segments' props go once all are joined.
+
+    Props that the finished shell needs by its locking order stay.
+    """
+    crown = {prop.joint for order in site.locking.values() for prop in order.released.props}
+    props = tuple(dict.fromkeys(joint for work in works for joint in work.props if joint not in crown))
+    if len(works) == 1 or not props:
+        return works
+    off = site.say("ridge.props_off", joints=joined_ranges(props))
+    return (*works[:-1], replace(works[-1], extras=(*works[-1].extras, off)))
+
+
+def _ridges(site: _Site, stood: dict[str, tuple[Work, ...]]) -> Iterator[Work]:
+    """Yield the joining of each pair of shells, with their blades and the fasteners of these; props off at the end."""
+    gridshell = site.gridshell
+    before: tuple[str, ...] = ()
+    pairs = ridge_pairs(gridshell)
+    props = {mark: tuple(joint for work in works for joint in work.props) for mark, works in stood.items()}
+    every = tuple(dict.fromkeys(joint for joints in props.values() for joint in joints))
+    for i, (a, b) in enumerate(pairs):
+        blades = [blade.mark for blade in gridshell.blades if set(parse_mark(blade.mark).family[1:]) == {a[1:], b[1:]}]
+        fasteners = [
+            mark
+            for joint in gridshell.joints
+            if {shell_of(member) for member in joint.members} - {""} == {a, b}
+            for mark in joint.fasteners
+        ]
+        last = i == len(pairs) - 1
+        work = Work(
+            f"site.ridge.{a}.{b}",
+            "ridges",
+            site.say("ridge.title", a=a, b=b),
+            after=(*(work.id for mark in (a, b) for work in stood[mark][-1:]), *before),
+            marks=(*blades, *fasteners),
+            assemblies=(a, b),
+            least_crew=2 * PAIR,
+            props=tuple(dict.fromkeys((*props[a], *props[b]))),
+            extras=(site.say("ridge.props_off", joints=joined_ranges(every)),) if last and every else (),
+        )
+        yield work
+        before = (work.id,)
+
+
+def site_works(
+    gridshell: Gridshell,
+    segmentation: Segmentation | None = None,
+    language: Language = "en",
+    locking: Sequence[LockingOrder] = (),
+) -> tuple[Work, ...]:
+    """Return the work that makes the gridshell of stiff shells, in an order in which it can be done.
+
+    A shell that ``segmentation`` cuts stands segment by segment, each joined to its neighbours (``standing_order``).
+    Props of ``locking`` under the finished shells (``LockingOrder.released``) stand before a shell leaves its slings,
+    and stay until the last ridge is joined.
+    """
+    site = _Site(gridshell, segmentation, {order.shell: order for order in locking}, language)
+    feet = Work(
+        "site.feet",
+        "feet",
+        site.say("feet.title"),
+        after=(),
+        marks=tuple(mark for shell in gridshell.shells for mark in shell_kit(shell).feet),
+        least_crew=PAIR,
+    )
+    stood = {shell.mark: _standing(site, shell, feet.id) for shell in gridshell.shells}
+    ridges = tuple(_ridges(site, stood))
+    standing = tuple(work for works in stood.values() for work in (works if ridges else _props_off(site, works)))
+    last = tuple(work.id for work in ridges[-1:] or (works[-1] for works in stood.values()))
+    covering = tuple(
+        Work(f"site.cover.{mark}", "cover", site.say("cover.title", shell=mark), last, kit.cover, least_crew=PAIR)
+        for mark, kit in ((shell.mark, shell_kit(shell)) for shell in gridshell.shells)
+        if kit.cover
+    )
+    return (feet, *standing, *ridges, *covering)

@@ -1,0 +1,1 @@
+"""What travels: segments, how they are found, spliced, slung and kept stiff on the way."""

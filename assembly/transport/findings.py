@@ -1,0 +1,129 @@
+"""What is found when a gridshell is cut for transport: what would spare a cut, what cannot be cut, slung or spliced."""
+
+import math
+from collections.abc import Sequence
+
+from aag_cad.findings import Finding, Severity
+from assembly.base.language import Language, say
+from assembly.base.mark_ranges import short_mark
+from assembly.transport.cut_pieces import Divisible, Run, run_between, run_splices
+from assembly.transport.lifting import LEAST_MARGIN, Lifting
+from assembly.transport.loading import Pose
+from assembly.transport.search import Limits, least_widths, pose_in, segment_ends, smallest_runs
+from assembly.transport.splices import Splice
+
+_ROUNDING = 1e-9
+_UP_TO = 10.0
+_AXES = ("length", "width", "height", "mass")
+
+
+def _words(language: Language, key: str, **figures: object) -> str:
+    return say(language, f"segments.finding.{key}", **figures)
+
+
+def _limits(limits: Limits, language: Language) -> str:
+    room = {"length": limits.length, "width": limits.width, "height": limits.height, "load": limits.load}
+    return _words(language, "limits" if math.isfinite(limits.load) else "limits_room", **room)
+
+
+def _up(size: float) -> float:
+    return _UP_TO * math.ceil(size / _UP_TO)
+
+
+def _sizes(sizes: Sequence[float]) -> str:
+    return " x ".join(f"{size:.0f}" for size in sizes)
+
+
+def _worst(pose: Pose, mass: float, limits: Limits) -> tuple[str, float, float, str]:
+    """Return in what a run exceeds a transport most: of length, width, height and mass, with found, allowed, unit."""
+    found, allowed = (*pose.size, mass), (*limits.room, limits.load)
+    i = max(range(len(_AXES)), key=lambda i: found[i] / allowed[i])
+    return _AXES[i], found[i], allowed[i], "kg" if _AXES[i] == "mass" else "mm"
+
+
+def _finding(
+    code: str, severity: Severity, mark: str, worst: tuple[str, float, float, str], what: str, remedy: str
+) -> Finding:
+    _, found, allowed, unit = worst
+    return Finding(code, severity, mark, what, found, allowed, unit, remedy)
+
+
+def whole_run(item: Divisible) -> Run:
+    """Return a shell as it travels whole."""
+    return run_between(item, *segment_ends(item, ())[0])
+
+
+def wish(item: Divisible, limits: Limits, language: Language = "en") -> str:
+    """Return what would let a shell travel whole: a width or a height, a larger transport, a load."""
+    run = whole_run(item)
+    load = _words(language, "load", mass=math.ceil(run.mass))
+    if pose_in(run, limits, 1.0).filling <= 1.0 + _ROUNDING:
+        return load
+    sizes = [
+        _words(language, "axis", side=key, size=f"{_up(size):.0f}")
+        for key, size in zip(("width", "height"), least_widths(run, limits), strict=True)
+        if size is not None
+    ]
+    if not sizes:
+        sizes = [_words(language, "room", sizes=_sizes([_up(size) for size in pose_in(run, limits).size]))]
+    found = _words(language, "or").join(sizes)
+    return found + _words(language, "and") + load if run.mass > limits.load else found
+
+
+def cut_finding(
+    item: Divisible, stops: tuple[int, ...], limits: Limits, wished: str, language: Language = "en"
+) -> Finding:
+    """Return which cuts a shell needs, and what would spare them (AAG961)."""
+    beams = sum(splice.kind == "block" for stop in stops for splice in run_splices(item, stop))
+    lines = ", ".join(short_mark(item.tracks.lines[item.tracks.line(stop) - 1]) for stop in stops)
+    run = whole_run(item)
+    worst = _worst(pose_in(run, limits), run.mass, limits)
+    remedy = _words(
+        language,
+        "cut",
+        limits=_limits(limits, language),
+        count=len(segment_ends(item, stops)),
+        lines=lines,
+        beams=beams,
+        wish=wished,
+    )
+    return _finding("AAG961", "warning", item.shell.mark, worst, _words(language, worst[0]), remedy)
+
+
+def hopeless_finding(item: Divisible, limits: Limits, wished: str, language: Language = "en") -> Finding:
+    """Return why no cuts along geodesics will do (AAG962): the geodesic that alone, cut as well as can be, is worst."""
+    best_of: dict[str, tuple[float, Run, Pose]] = {}
+    for ends in smallest_runs(item):
+        run = run_between(item, *ends)
+        pose = pose_in(run, limits, 1.0)
+        filling = max(pose.filling, run.mass / limits.load)
+        if filling < best_of.get(run.geodesics[0], (math.inf,))[0]:
+            best_of[run.geodesics[0]] = filling, run, pose
+    _, run, pose = max(best_of.values(), key=lambda best: best[0])
+    figures = {"geodesic": short_mark(run.geodesics[0]), "box": _words(language, "box", sizes=_sizes(pose.size))}
+    told = _words(language, "worst", mass=f"{run.mass:.0f}", **figures)
+    remedy = _words(language, "hopeless", limits=_limits(limits, language), worst=told, wish=wished)
+    worst = _worst(pose, run.mass, limits)
+    return _finding("AAG962", "error", item.shell.mark, worst, _words(language, worst[0]), remedy)
+
+
+def lifting_finding(segment: str, lifting: Lifting, language: Language = "en") -> Finding | None:
+    """Return that a segment cannot be slung by three joints (AAG963, a warning: a spreader helps), None if it can."""
+    if lifting.studs:
+        return None
+    found = max(lifting.margin, 0.0)
+    what, remedy = _words(language, "sling"), _words(language, "sling_remedy")
+    return Finding("AAG963", "warning", segment, what, found, LEAST_MARGIN, "mm", remedy)
+
+
+def splice_finding(splice: Splice, language: Language = "en") -> Finding | None:
+    """Return that a splice does not keep its distances (AAG964), None if it does."""
+    if splice.fits:
+        return None
+    near = splice.clear < splice.required
+    found, allowed = (splice.clear, splice.required) if near else (splice.room, splice.reach)
+    kind = "edge" if splice.kind == "plate" else "hole" if near else "part"
+    joint = short_mark(splice.joint) if splice.joint else ""
+    what = _words(language, f"next_{kind}", joint=joint, line=short_mark(splice.line))
+    remedy = _words(language, "edge_remedy" if splice.kind == "plate" else "beam_remedy")
+    return Finding("AAG964", "error", splice.member, what, found, allowed, "mm", remedy)

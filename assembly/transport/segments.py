@@ -1,0 +1,232 @@
+"""The segments in which a gridshell travels: its shells, cut along geodesics if they must be (paper section 3.2)."""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from aag_cad.findings import Finding
+from aag_cad.parts.mesh import frame_matrix
+from aag_cad.parts.model import Frame, Gridshell, Shell
+from aag_cad.parts.products import product_key
+from aag_cad.parts.quantities import material
+from aag_cad.units import Floats, Vector, vector
+from assembly.base.language import Language
+from assembly.transport.cut_pieces import Divisible, PlankPiece, Run, cut_stops, divisible, run_between, run_splices
+from assembly.transport.findings import cut_finding, hopeless_finding, lifting_finding, splice_finding, wish
+from assembly.transport.lifting import STIFF_GEODESICS, Brace, Lifting, braces, lifting_points, standing_props
+from assembly.transport.loading import Pose
+from assembly.transport.search import Limits, best_stops, pose_in, segment_ends
+from assembly.transport.splices import Splice
+
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Segment:
+    """What travels in one piece, without shoes, rods, blocks, cover and blades: those are fixed on site.
+
+    ``parts`` are the marks of whole parts, ``pieces`` what it has of cut planks. ``mass`` in kg, without bracing;
+    ``timber`` of it is timber; ``centre`` of gravity and the axes of ``pose`` are in vault coordinates, mm. ``over`` is
+    what length, width, height (mm) and mass (kg) exceed the transport by, negative where there is room. ``props`` are
+    the studs under which a segment of a cut shell is propped wherever it stands alone on its feet.
+    """
+
+    name: str
+    shell: str
+    geodesics: tuple[str, ...]
+    parts: tuple[str, ...]
+    pieces: tuple[PlankPiece, ...]
+    mass: float
+    timber: float
+    centre: Vector
+    pose: Pose
+    over: tuple[float, float, float, float]
+    lifting: Lifting
+    braces: tuple[Brace, ...]
+    props: tuple[str, ...]
+
+    @property
+    def fits(self) -> bool:
+        """Whether the segment fits the transport."""
+        return self.pose.filling <= 1.0 + _ROUNDING and self.over[3] <= 0.0
+
+    @property
+    def tilt(self) -> float:
+        """The angle by which the segment is turned over for transport, from standing as in the vault, radians."""
+        return math.acos(min(1.0, max(-1.0, self.pose.axes[2][2])))
+
+
+@dataclass(frozen=True)
+class Segmentation:
+    """How a gridshell is divided: segments, splices, and the fasteners put in on site because they join segments.
+
+    ``changes`` are warnings: what a shell that is cut would need to travel whole; ``problems`` are what must change
+    because it cannot be cut or spliced so (errors), or cannot be slung by three joints (warnings).
+    """
+
+    limits: Limits
+    segments: tuple[Segment, ...]
+    splices: tuple[Splice, ...]
+    site: tuple[str, ...]
+    changes: tuple[Finding, ...]
+    problems: tuple[Finding, ...]
+
+
+def _vault_pose(pose: Pose, placement: Frame) -> Pose:
+    """Return a pose with its axes in vault coordinates; the up axis upwards, by turning it half about its length."""
+    axes = np.array(pose.axes) @ frame_matrix(placement)[:3, :3].T
+    if axes[2, 2] < 0.0:
+        axes[1:] = -axes[1:]
+    return Pose((vector(axes[0]), vector(axes[1]), vector(axes[2])), pose.size, pose.filling)
+
+
+def _points(item: Divisible, run: Run, matrix: Floats) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Return the places (3,) of the studs of a run and of its coupling blocks, in vault coordinates."""
+    own, shell = set(run.parts), item.shell
+    studs = {stud.mark: np.array(stud.frame.origin) for stud in shell.studs if stud.mark in own}
+    held = {block.mark for block in shell.blocks} & own
+    blocks = {joint.mark: np.array(joint.point) for joint in shell.joints if joint.mark in held and joint.kind == "AG"}
+    turn, move = matrix[:3, :3], matrix[:3, 3]
+    return ({m: turn @ p + move for m, p in studs.items()}, {m: turn @ p + move for m, p in blocks.items()})
+
+
+def _feet(item: Divisible, run: Run, matrix: Floats) -> list[Floats]:
+    """Return the feet of the geodesics of a run, (3,) each."""
+    own = set(run.geodesics)
+    joints = (joint for joint in item.shell.joints if joint.kind == "foot" and own & set(joint.members))
+    return [matrix[:3, :3] @ np.array(joint.point) + matrix[:3, 3] for joint in joints]
+
+
+def _rising(marks: Iterable[str], points: Mapping[str, Floats]) -> list[str]:
+    return sorted(set(marks), key=lambda mark: (round(float(points[mark][2]), 3), mark))
+
+
+def _columns(item: Divisible, start: int, end: int, studs: dict[str, Floats]) -> dict[int, list[str]]:
+    """Return the studs of each bay of a run, from the lowest to the highest; bays from the first to the last."""
+    grid, bays = item.tracks, item.tracks.bays(start, end)
+    order = [grid.bay(bay) for bay in range(start // 2 - 1, end // 2 + 1)]
+    found: dict[int, list[str]] = {bay: [] for bay in dict.fromkeys(order) if bay in bays}
+    for track in grid.members:
+        for place in item.beams[track.mark].joints if not track.edge else ():
+            if place.joint in studs:
+                found[grid.bay(track.bay(place.station))].append(place.joint)
+    return {bay: _rising(marks, studs) for bay, marks in found.items()}
+
+
+def _outermost(
+    item: Divisible, start: int, end: int, columns: Mapping[int, list[str]], blocks: dict[str, Floats]
+) -> tuple[list[str], list[str]]:
+    """Return the first and the last column of a run, each from the lowest to the highest joint.
+
+    A column is the studs of a bay or the coupling blocks on a geodesic.
+    """
+    grid = item.tracks
+    placed = {2 * bay + 1: columns.get(grid.bay(bay), []) for bay in range(start // 2 - 1, end // 2 + 1)}
+    for line in range((start + 1) // 2, (end + 1) // 2):
+        geodesic = item.planks[grid.lines[grid.line(2 * line) - 1]]
+        placed[2 * line] = _rising((place.joint for place in geodesic.joints if place.joint in blocks), blocks)
+    filled = [placed[at] for at in sorted(placed) if len(placed[at]) > 1]
+    return (filled[0], filled[-1]) if len(filled) > 1 else ([], [])
+
+
+def _over(pose: Pose, run: Run, limits: Limits) -> tuple[float, float, float, float]:
+    length, width, height = (size - room for size, room in zip(pose.size, limits.room, strict=True))
+    return length, width, height, run.mass - limits.load
+
+
+def _segment(item: Divisible, name: str, stops: tuple[int, int], run: Run, shell_pose: Pose, limits: Limits) -> Segment:
+    """Return the segment of a run between two stops, lying in a pose that is given in the coordinates of its shell."""
+    shell, grid, (start, end) = item.shell, item.tracks, stops
+    matrix = frame_matrix(shell.placement)
+    centre = matrix[:3, :3] @ run.centre + matrix[:3, 3]
+    pose = _vault_pose(shell_pose, shell.placement)
+    studs, blocks = _points(item, run, matrix)
+    cuts = cut_stops(grid, start, end)
+    sides = {grid.bay(start // 2): start % 2 == 0} if start in cuts else {}
+    sides |= {grid.bay(end // 2 - 1): end % 2 == 1} if end in cuts else {}
+    lifting = lifting_points(studs, centre)
+    if not lifting.studs:
+        lifting = lifting_points(studs | blocks, centre)
+    props = standing_props(_feet(item, run, matrix), studs, centre) or lifting.studs
+    columns = _columns(item, start, end, studs)
+    few = len(run.geodesics) < STIFF_GEODESICS
+    ends = _outermost(item, start, end, columns, blocks) if few else ([], [])
+    steel = sum(item.masses[mark] for mark in run.parts if mark in item.small and material(item.small[mark]) == "steel")
+    return Segment(
+        name,
+        shell.mark,
+        run.geodesics,
+        run.parts,
+        run.pieces,
+        run.mass,
+        run.mass - steel,
+        vector(centre),
+        pose,
+        _over(pose, run, limits),
+        lifting,
+        braces(studs | blocks, columns, sides, ends),
+        props if cuts else (),
+    )
+
+
+def _shape_key(shell: Shell) -> tuple[str, ...]:
+    """Return what shells that are cut alike have in common: equal planks at equal joints."""
+    return (*(product_key(plank) for plank in shell.planks), *(f"{joint.kind}{joint.point}" for joint in shell.joints))
+
+
+def _on_site(item: Divisible, segments: list[Segment], splices: list[Splice]) -> list[str]:
+    """Return the fasteners, blocks and straps of a cut shell that belong to no segment, less what splices replace."""
+    if len(segments) == 1:
+        return []
+    carried = {mark for segment in segments for mark in segment.parts}
+    gone = carried | {mark for splice in splices for mark in splice.left_out} | item.fixed_on_site
+    return [mark for mark in item.small if mark not in gone]
+
+
+def segments(gridshell: Gridshell, limits: Limits, language: Language = "en") -> Segmentation:
+    """Return the fewest segments that fit the transport, with fewest cut beams, then most even masses.
+
+    Shells are divided along the ridges already; each is cut further along its geodesics if it must be. The choice of
+    cuts is exact (``assembly.transport.partition``) for what was found to fit; size is that of the best pose found
+    (``assembly.transport.loading``). Shells of equal shape are searched once. PlanError for a shell without three geodesics.
+    """
+    made: list[Segment] = []
+    splices: list[Splice] = []
+    site: list[str] = []
+    changes: list[Finding] = []
+    problems: list[Finding] = []
+    known: dict[tuple[str, ...], tuple[tuple[int, ...] | None, str]] = {}
+    poses: dict[tuple[str, ...], list[Pose]] = {}
+    for shell in gridshell.shells:
+        item, key = divisible(shell, gridshell.timber), _shape_key(shell)
+        if key not in known:
+            stops = best_stops(item, limits)
+            known[key] = stops, "" if stops == () else wish(item, limits, language)
+        stops, wished = known[key]
+        ends = segment_ends(item, stops or ())
+        runs = [run_between(item, *pair) for pair in ends]
+        if key not in poses:
+            poses[key] = [pose_in(run, limits) for run in runs]
+        names = [shell.mark] if len(ends) == 1 else [f"{shell.mark}.{i}" for i in range(1, len(ends) + 1)]
+        own = [_segment(item, *told, limits) for told in zip(names, ends, runs, poses[key], strict=True)]
+        cut = [splice for stop in stops or () for splice in run_splices(item, stop)]
+        made += own
+        splices += cut
+        site += _on_site(item, own, cut)
+        if stops is None:
+            problems.append(hopeless_finding(item, limits, wished, language))
+        elif stops:
+            changes.append(cut_finding(item, stops, limits, wished, language))
+        found = (
+            *(splice_finding(s, language) for s in cut),
+            *(lifting_finding(s.name, s.lifting, language) for s in own),
+        )
+        problems += [finding for finding in found if finding is not None]
+    return Segmentation(limits, tuple(made), tuple(splices), tuple(site), tuple(changes), tuple(problems))
+
+
+def segment_findings(segmentation: Segmentation) -> tuple[Finding, ...]:
+    """Return what is found about segments: AAG961 shells that must be cut, AAG962 to AAG964 what must change."""
+    return (*segmentation.changes, *segmentation.problems)
