@@ -59,8 +59,8 @@ def lifting_findings(
 ) -> tuple[Finding, ...]:
     """Return what is heavy (AAG955): warnings for what the whole crew cannot lift, notes for what takes several people.
 
-    ``weights`` are (kg, mm) by mark, as in ``assembly.plan.assembly_plan.piece_weights``. A warning names all pieces of one mass, a
-    note the heaviest of all that take so many people.
+    ``weights`` are (kg, mm) by mark, as in ``assembly.plan.assembly_plan.piece_weights``. A warning names all pieces of
+    one mass, a note the heaviest of all that take so many people.
     """
     heavy: dict[float, list[str]] = defaultdict(list)
     shared: dict[int, list[tuple[float, str]]] = defaultdict(list)

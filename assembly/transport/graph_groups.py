@@ -81,7 +81,8 @@ def _divided(
 def partition_graph(graph: "nx.Graph[str]", limits: Limits) -> tuple[frozenset[str], ...]:
     """Return groups of nodes, each light and small enough to travel, that cut few joints.
 
-    Any networkx graph whose nodes carry ``mass_kg`` and ``position`` (mm), such as ``assembly.graph.gridshell_graph.assembly_graph``.
+    Any networkx graph whose nodes carry ``mass_kg`` and ``position`` (mm), such as
+    ``assembly.graph.gridshell_graph.assembly_graph``.
     The size is that of the positions: where parts stand out past them, give limits less by that. Halves of equal mass
     are exchanged node by node (Kernighan and Lin), which keeps their node counts, unless a half outgrows the transport
     by it. Groups come in the order of their first marks. PlanError if a node lacks an attribute or is too heavy by

@@ -190,7 +190,8 @@ def segments(gridshell: Gridshell, limits: Limits, language: Language = "en") ->
 
     Shells are divided along the ridges already; each is cut further along its geodesics if it must be. The choice of
     cuts is exact (``assembly.transport.partition``) for what was found to fit; size is that of the best pose found
-    (``assembly.transport.loading``). Shells of equal shape are searched once. PlanError for a shell without three geodesics.
+    (``assembly.transport.loading``). Shells of equal shape are searched once. PlanError for a shell without three
+    geodesics.
     """
     made: list[Segment] = []
     splices: list[Splice] = []

@@ -229,7 +229,8 @@ def test_a_lay_step_lasts_as_long_as_what_is_done_in_it() -> None:
 def test_the_plan_does_not_depend_on_the_hash_of_marks() -> None:
     code = (
         "from assembly.graph.files import graph_text, read_graph; from assembly.plan.graph_plan import graph_plan; "
-        "from assembly.plan.assembly_plan import plan_json; print(plan_json(graph_plan(read_graph(graph_text('kagome')), 4, 25.0)))"
+        "from assembly.plan.assembly_plan import plan_json; "
+        "print(plan_json(graph_plan(read_graph(graph_text('kagome')), 4, 25.0)))"
     )
     here = plan_json(graph_plan(read_graph(graph_text("kagome")), 4, 25.0))
     environment = os.environ | {"PYTHONHASHSEED": "4711"}

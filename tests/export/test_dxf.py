@@ -224,7 +224,8 @@ def test_texts_are_spread_in_order_with_room_between_and_no_drift(wanted: list[f
 def test_a_drawing_has_the_same_bytes_whatever_the_hash_seed() -> None:
     """The library registers classes in the order of a set, which the seed of the process turns about."""
     code = (
-        "import sys; from aag_cad.export.workshop.dxf import dxf_bytes; from aag_cad.export.workshop.blank_drawings import Drawing, Line; "
+        "import sys; from aag_cad.export.workshop.dxf import dxf_bytes; "
+        "from aag_cad.export.workshop.blank_drawings import Drawing, Line; "
         "sys.stdout.buffer.write(dxf_bytes(Drawing('T-01', (Line('OUTLINE', (0.0, 0.0), (9.0, 5.0)),), "
         "(0.0, 0.0, 9.0, 5.0))))"
     )
