@@ -226,8 +226,8 @@ def plan(
     """Plan the assembly, the locking, the journey and the taking down; exit code 1 on a finding of severity error."""
     from dataclasses import asdict
 
+    from aag_cad.language import language_of
     from aag_cad.planning import STAGES, explained, planned_source, read_source, write_plan
-    from assembly.base.language import language_of
     from assembly.plan.assembly_plan import plan_json
     from assembly.transport.search import limits_from
 

@@ -25,5 +25,9 @@ class SolidError(AagError, ArithmeticError):
     """A solid that came out invalid; the text names the mark."""
 
 
+class LanguageError(AagError, ValueError):
+    """A language in which nothing is printed."""
+
+
 class FileError(AagError, OSError):
     """A file or folder that cannot be read or written."""

@@ -192,7 +192,7 @@ def build(
     PlanError if the sheets are not printed in ``language``.
     """
     from aag_cad.export.office.summary import summary_of, write_summary
-    from assembly.base.language import language_of
+    from aag_cad.language import language_of
     from assembly.plan.planned import limits_of, planned_of
 
     outputs, ifc_options = chosen_outputs(only), ifc or IfcOptions()

@@ -14,10 +14,10 @@ from aag_cad.errors import DesignError, FileError
 from aag_cad.export.office.plan_files import PLAN_WRITERS, Planning, write_graph_groups, write_graph_plan
 from aag_cad.files import publishing, read_text, sizes_below
 from aag_cad.findings import Finding, worst_first
+from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell
 from aag_cad.parts.store import read_gridshell
 from aag_cad.pipeline import Report, gridshell_of
-from assembly.base.language import Language
 from assembly.graph.files import graph_text, read_graph, shipped_graphs
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.locking.order import LockingOrder

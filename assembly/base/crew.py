@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from aag_cad.errors import MarkError
 from aag_cad.findings import Finding
+from aag_cad.language import Language, say
 from assembly.base.errors import PlanError
-from assembly.base.language import Language, say
 from assembly.base.mark_ranges import joined_ranges
 
 LONG_PIECE = 3000.0

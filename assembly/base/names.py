@@ -2,6 +2,7 @@
 
 from typing import TypeAlias
 
+from aag_cad.language import Language, figure, say
 from aag_cad.parts.model import (
     Blade,
     Bolt,
@@ -19,18 +20,12 @@ from aag_cad.parts.model import (
     Stud,
 )
 from aag_cad.parts.quantities import sizes
-from assembly.base.language import Language, say
 from assembly.base.steps import DOWN_PHASES, Phase
 
 _Bar: TypeAlias = Plank | Mullion | ClampingBar | Strap | Shoe | Blade
 _BARS: dict[type[_Bar], str] = {
     Plank: "plank", Mullion: "mullion", ClampingBar: "clamp", Strap: "strap", Shoe: "shoe", Blade: "blade",
 }  # fmt: skip
-
-
-def figure(text: str, language: Language) -> str:
-    """Return a printed number with the decimal sign of a language."""
-    return text.replace(".", ",") if language == "de" else text
 
 
 def phase_name(phase: Phase, language: Language = "en") -> str:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
 from aag_cad.findings import Finding
-from assembly.base.language import Language
+from aag_cad.language import Language
 
 # "lay", "slide" and "join" are those of planks of any layers; "divide" and "splice" those of shells cut for transport.
 UpPhase: TypeAlias = Literal[

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from datetime import date, datetime, time, timedelta
 
 from aag_cad.files import write_bytes
+from aag_cad.language import Figure, say
 from assembly.base.errors import PlanError
-from assembly.base.language import say
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.names import phase_name
 from assembly.base.steps import Plan, Step
@@ -69,7 +69,7 @@ def folded(line: str) -> str:
 
 
 def _description(plan: Plan, step: Step) -> str:
-    def word(key: str, **figures: object) -> str:
+    def word(key: str, **figures: Figure) -> str:
         return say(plan.language, f"schedule.calendar.{key}", **figures)
 
     numbers = {each.id: each.number for each in plan.steps}

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from aag_cad.language import Language, figure, say, says, words_table
 from aag_cad.parts.marks import shell_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Bolt, Gridshell, Part, Plank, Rod, Screw, Shell, all_parts, shell_parts
-from assembly.base.language import Language, say, says, words_table
 from assembly.base.mark_ranges import joined_ranges, mark_ranges, short_mark
-from assembly.base.names import figure, part_name, phase_name
+from assembly.base.names import part_name, phase_name
 from assembly.base.part_groups import driven_from_outside
 from assembly.base.steps import PHASES, Plan, Step
 from assembly.graph.gridshell_graph import joint_of

@@ -6,8 +6,8 @@ from math import ceil
 from typing import Any, Literal, TypeAlias
 
 from aag_cad.findings import worst_first
+from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell, all_parts
-from assembly.base.language import Language
 from assembly.base.steps import Plan, Step
 from assembly.booklet.cards import Weights, step_card, totals
 from assembly.booklet.gantt import gantt_svg

@@ -5,8 +5,7 @@ from math import ceil
 
 import numpy as np
 
-from assembly.base.language import Language, say
-from assembly.base.names import figure
+from aag_cad.language import Language, figure, say
 from assembly.base.steps import Phase, Plan, Step
 from assembly.drawing.svg import CHARACTER, Style, group, line, number, polygon, rectangle, svg, text
 from assembly.plan.schedule import Schedule, ScheduledStep, people_curve

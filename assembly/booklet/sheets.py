@@ -3,10 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from aag_cad.language import Language, figure, say
 from aag_cad.parts.model import Gridshell, Shell
-from assembly.base.language import Language, say
 from assembly.base.mark_ranges import joined_ranges
-from assembly.base.names import figure
 from assembly.locking.order import LockingOrder, locking_svg, locking_table, plot_words
 from assembly.pictures.label_map import MAP_SIZE, label_map_svg
 from assembly.pictures.layer_legend import layer_legend_svg

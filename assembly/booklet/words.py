@@ -5,8 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from aag_cad.findings import Finding
-from assembly.base.language import Language, say, words_table
-from assembly.base.names import figure
+from aag_cad.language import Language, figure, say, words_table
 
 
 def booklet_words(language: Language) -> dict[str, Any]:

@@ -4,9 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from aag_cad.language import Language, figure, say
 from aag_cad.parts.model import Bolt, CrossSection, Shell
-from assembly.base.language import Language, say
-from assembly.base.names import figure
 from assembly.drawing.svg import Style, circle, group, line, polygon, rectangle, svg, text
 
 _CUT = Style("#bdbdbd", "#000", 2.0)

@@ -5,14 +5,13 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from aag_cad.geometry.framed import frames_at
+from aag_cad.language import Language, figure, say
 from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Blade, Bolt, FlatBar, FoldedPlate, Frame, Gridshell, Joint, Plank, Shell, Shoe, Strap
 from aag_cad.parts.plates import plate_rings
 from aag_cad.units import Floats, vector
-from assembly.base.language import Language, say
-from assembly.base.names import figure
 from assembly.drawing.joint_sections import callout
 from assembly.drawing.part_outlines import Flat
 from assembly.drawing.svg import CHARACTER, Style, line, path, polygon, svg

@@ -6,7 +6,7 @@ from itertools import groupby, pairwise
 
 import networkx as nx
 
-from assembly.base.language import Language, say
+from aag_cad.language import Language, say
 from assembly.graph.laying_units import Crossing
 
 

@@ -1,12 +1,12 @@
 """What is wrong with a graph of parts and joints before anything is planned with it; every fault, not only the first.
 
-A node needs ``kind`` (text), ``mass_kg`` and ``length_mm``; what is laid on the floor, a plank or an end of a
-crossing, also ``start`` and ``end``. A crossing needs ``above`` or nodes in different layers. All else of
+A node needs ``kind`` (text), ``mass_kg`` and ``length_mm``; what is laid on the floor, a plank or an end of a crossing,
+also ``start`` and ``end``. A crossing needs ``above`` or nodes in different layers. All else of
 ``assembly.graph.gridshell_graph.PartNode`` and ``JointEdge`` may be left out: ``family``, ``shell``, ``beam`` and
 ``joint_kind`` are then "", ``layer`` None, ``upright`` False, ``slides`` whatever ``upright`` is not, ``position`` the
 middle between the ends, ``joint`` the key of the edge or its two marks, the stations of a crossing those where its
-straight lines come nearest. Where ``depth_mm`` or ``min_radius_mm`` is left out, no bend can be checked, and the plank is slid in only
-where it stays straight. Attributes of other names are kept and not looked at.
+straight lines come nearest. Where ``depth_mm`` or ``min_radius_mm`` is left out, no bend can be checked, and the plank
+is slid in only where it stays straight. Attributes of other names are kept and not looked at.
 """
 
 import math

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import networkx as nx
 
 from aag_cad.findings import Finding
+from aag_cad.language import Language, say
 from assembly.base.errors import PlanError
-from assembly.base.language import Language, say
 from assembly.graph.circles import circle_links, few_out, knots, part_of, relations
 from assembly.graph.faults import refuse_unlayable
 from assembly.graph.laying_units import EDGE_FAMILY, Crossing, crossings_of, units_of

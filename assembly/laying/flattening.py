@@ -15,10 +15,10 @@ from scipy.sparse import csc_array, eye_array
 from scipy.sparse.linalg import splu
 
 from aag_cad.findings import Finding, Severity
+from aag_cad.language import Language, say
 from aag_cad.parts.model import Plank, Shell, Timber
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
-from assembly.base.language import Language, say
 from assembly.laying.net import Net, Ray, is_ring, shell_net
 from assembly.laying.terms import Arrays, Stiffness, bending, net_arrays, residuals, started, stretch, turning
 
@@ -54,13 +54,13 @@ class FlatMember:
 class FlatState:
     """A shell on the floor: its members from the lowest layer up, its studs, crossings and foot joints by mark.
 
-    ``size`` is the floor that it covers, x by y; ``view_origin`` is where the origin of the view square on to the
-    shell (``assembly.base.shell_axes``) lies on it, None for a ring. ``length_error`` is the largest error of a distance
-    between neighbouring holes, ``aside`` the largest distance of a crossing from the line of its geodesic, ``turns`` how much
-    wider each node's angle from lower to upper beam is than in the shell. ``radius`` is the smallest radius of what a
-    beam is bent beyond its made shape, ``eased_radius`` what bolts with play in their holes leave of it, in the beam
-    ``bent``; ``clearance`` is the least gap between a geodesic and a stud. ``left_open`` are the joints of a ring that
-    come together only when it is closed.
+    ``size`` is the floor that it covers, x by y; ``view_origin`` is where the origin of the view square on to the shell
+    (``assembly.base.shell_axes``) lies on it, None for a ring. ``length_error`` is the largest error of a distance
+    between neighbouring holes, ``aside`` the largest distance of a crossing from the line of its geodesic, ``turns``
+    how much wider each node's angle from lower to upper beam is than in the shell. ``radius`` is the smallest radius of
+    what a beam is bent beyond its made shape, ``eased_radius`` what bolts with play in their holes leave of it, in the
+    beam ``bent``; ``clearance`` is the least gap between a geodesic and a stud. ``left_open`` are the joints of a ring
+    that come together only when it is closed.
     """
 
     shell: str

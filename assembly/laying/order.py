@@ -12,11 +12,11 @@ from typing import TypeAlias, TypeVar
 import networkx as nx
 import numpy as np
 
+from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell, Shell, Stud
 from aag_cad.units import MM_PER_M, Floats, Vector
 from assembly.base.crew import LONG_PIECE
 from assembly.base.errors import PlanError
-from assembly.base.language import Language
 from assembly.base.shell_axes import shell_view, sweep_direction
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import Interlacing, Slide, interlacing, refuse_left_out

@@ -13,13 +13,12 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from aag_cad.language import Language, figure, say, says, words_table
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
-from assembly.base.language import Language, say, says, words_table
 from assembly.base.mark_ranges import joined_ranges
-from assembly.base.names import figure
 from assembly.drawing.svg import CHARACTER, Style, circle, group, line, polygon, rectangle, svg, text
 from assembly.locking.model import (
     LockingModel,

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from aag_cad.language import Language
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import (
@@ -21,7 +22,6 @@ from aag_cad.parts.model import (
     shell_parts,
 )
 from aag_cad.units import Floats
-from assembly.base.language import Language
 from assembly.base.mark_ranges import short_mark
 from assembly.base.part_groups import shell_kit
 from assembly.base.steps import DOWN_PHASES, Plan, Step

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from aag_cad.language import Language, say
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
-from assembly.base.language import Language, say
 from assembly.base.mark_ranges import short_mark
 from assembly.drawing.outline import Outline, shell_outline
 from assembly.drawing.svg import (

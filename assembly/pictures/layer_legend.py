@@ -11,11 +11,10 @@ from scipy.spatial import ConvexHull
 
 from aag_cad.geometry.framed import frames_at
 from aag_cad.geometry.surface import unit
+from aag_cad.language import Language, figure, say
 from aag_cad.parts.model import Beam, CouplingBlock, Joint, Plank, Shell, Stud
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
-from assembly.base.language import Language, say
-from assembly.base.names import figure
 from assembly.base.shell_axes import shell_view
 from assembly.drawing.joint_sections import callout
 from assembly.drawing.svg import Style, group, line, path, rectangle, svg, text

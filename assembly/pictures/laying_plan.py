@@ -10,12 +10,11 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from aag_cad.language import Language, figure, say, says
 from aag_cad.parts.model import Shell
 from aag_cad.units import MM_PER_M, Floats
 from assembly.base.errors import PlanError
-from assembly.base.language import Language, say, says
 from assembly.base.mark_ranges import short_mark
-from assembly.base.names import figure
 from assembly.drawing.svg import (
     Box,
     Label,

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell, Shell, shell_parts
-from assembly.base.language import Language
 from assembly.base.steps import Step
 from assembly.drawing.outline import Outline, elevation_outline, vault_outline
 from assembly.drawing.steel_sections import blade_section_svg, foot_section_svg

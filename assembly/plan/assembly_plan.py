@@ -5,13 +5,13 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict
 
 from aag_cad.errors import FileError
+from aag_cad.language import Language, say
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell, JointKind, Shell, all_parts
 from aag_cad.parts.quantities import mass, sizes
 from aag_cad.parts.store import value_of
 from assembly.base.crew import Crew, crew_of, hands_for, lifting_findings
 from assembly.base.errors import PlanError
-from assembly.base.language import Language, say
 from assembly.base.part_groups import shell_kit
 from assembly.base.steps import Plan, Step
 from assembly.laying.order import FlatOrder, flat_orders

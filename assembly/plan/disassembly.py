@@ -8,11 +8,11 @@ from itertools import chain, groupby
 import numpy as np
 
 from aag_cad.geometry.framed import curvatures_at
+from aag_cad.language import Figure, Language, say, says
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Bolt, Gridshell, Rod, Shell, Timber
 from aag_cad.units import MM_PER_M
 from assembly.base.crew import Crew, crew_of, hands_for
-from assembly.base.language import Language, say, says
 from assembly.base.mark_ranges import joined_ranges, short_mark
 from assembly.base.part_groups import Kit, shell_kit
 from assembly.base.steps import DownPhase, Plan, Step
@@ -47,7 +47,7 @@ class _Task:
     id: str
     phase: DownPhase
     title: str
-    named: Mapping[str, object]
+    named: Mapping[str, Figure]
     shell: str
     after: tuple[str, ...]
     marks: tuple[str, ...] = ()
@@ -186,7 +186,7 @@ def _dismantling(shell: Shell, runs: Sequence[Sequence[str]], kit: Kit) -> Itera
         yield _Task(f"{name}.down.unbolt.{k}", "unbolt", "unbolt", told, name, taken, out)
         ends.append(f"{name}.down.unbolt.{k}")
     planks = tuple(sorted(plank.mark for plank in shell.planks))
-    counted = {"count": len(planks), "shell": name}
+    counted: dict[str, Figure] = {"count": len(planks), "shell": name}
     yield _Task(f"{name}.down.measure", "passports", "passports", counted, name, tuple(ends), (), planks)
 
 
@@ -262,7 +262,11 @@ def _extras(
         return tuple(splice_extras(language, segmentation, set(task.marks), "unmade"))
     shell = own[0].shell
     lines = dict.fromkeys(short_mark(s.line) for s in segmentation.splices if s.line.startswith(f"{shell}-"))
-    told = {"segments": ", ".join(s.name for s in own), "lines": ", ".join(lines), "mass": weights[shell][0]}
+    told: dict[str, Figure] = {
+        "segments": ", ".join(s.name for s in own),
+        "lines": ", ".join(lines),
+        "mass": weights[shell][0],
+    }
     return (say(language, "site.unmade.whole", **told),)
 
 

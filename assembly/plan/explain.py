@@ -6,10 +6,9 @@ from difflib import get_close_matches
 
 import networkx as nx
 
+from aag_cad.language import Language, figure, say, words_table
 from assembly.base.errors import PlanError
-from assembly.base.language import Language, say, words_table
 from assembly.base.mark_ranges import joined_ranges
-from assembly.base.names import figure
 from assembly.base.steps import Plan, Step
 from assembly.graph.gridshell_graph import joint_of
 from assembly.locking.order import LockingOrder, LockingStep, frequency

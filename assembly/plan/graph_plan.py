@@ -10,9 +10,9 @@ import networkx as nx
 from aag_cad.design_making import Minutes
 from aag_cad.errors import MarkError
 from aag_cad.findings import Finding
+from aag_cad.language import Figure, Language, say, says
 from aag_cad.units import MM_PER_M
 from assembly.base.crew import Crew, crew_of, hands_for, lifting_findings, named_marks
-from assembly.base.language import Language, say, says
 from assembly.base.mark_ranges import short_mark
 from assembly.base.steps import Phase, Plan, Step
 from assembly.checks.graph_plan import check_graph_plan
@@ -42,7 +42,7 @@ class _Task:
     crew: Crew
     language: Language
 
-    def say(self, key: str, **figures: object) -> str:
+    def say(self, key: str, **figures: Figure) -> str:
         """Return a text of the table ``plan`` in ``words/graph.toml``."""
         return say(self.language, f"graph.plan.{key}", **figures)
 

@@ -8,9 +8,9 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 
+from aag_cad.language import Figure, Language, say
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Shell
-from assembly.base.language import Language, say
 from assembly.base.mark_ranges import joined_ranges, short_mark
 from assembly.graph.gridshell_graph import joint_of
 from assembly.plan.shell_work import EVERYONE, Work
@@ -29,7 +29,7 @@ def _fasteners(language: Language, marks: Sequence[str]) -> str:
     return ", ".join(say(language, f"site.count.{kind}", count=count) for kind, count in counted)
 
 
-def _figures(splice: Splice) -> dict[str, object]:
+def _figures(splice: Splice) -> dict[str, Figure]:
     """Return what every sentence about a splice may say: marks without their shell, length, bolts."""
     return {
         "line": short_mark(splice.line),

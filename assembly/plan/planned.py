@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from aag_cad.design_making import Crew, Transport
+from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell
-from assembly.base.language import Language
 from assembly.base.steps import Plan
 from assembly.laying.flattening import FlatState, flat_findings, flat_state
 from assembly.laying.order import FlatOrder, flat_orders

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, groupby
 
+from aag_cad.language import Figure, Language, say
 from aag_cad.parts.model import Shell
-from assembly.base.language import Language, say
 from assembly.base.mark_ranges import joined_ranges, short_mark
 from assembly.base.part_groups import Kit, shell_kit
 from assembly.base.steps import Phase
@@ -51,7 +51,7 @@ class _Task:
     order: FlatOrder
     language: Language
 
-    def say(self, key: str, **figures: object) -> str:
+    def say(self, key: str, **figures: Figure) -> str:
         """Return a title or a phrase of ``words/steps.toml``."""
         return say(self.language, f"steps.{key}", **figures)
 

@@ -4,9 +4,9 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from aag_cad.language import Figure, Language, say
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.model import Gridshell, Shell
-from assembly.base.language import Language, say
 from assembly.base.mark_ranges import joined_ranges, short_mark
 from assembly.base.part_groups import Kit, shell_kit
 from assembly.graph.gridshell_graph import joint_of
@@ -26,7 +26,7 @@ class _Site:
     locking: dict[str, LockingOrder]
     language: Language
 
-    def say(self, key: str, **figures: object) -> str:
+    def say(self, key: str, **figures: Figure) -> str:
         """Return a title or a phrase of ``words/site.toml``."""
         return say(self.language, f"site.{key}", **figures)
 

@@ -5,9 +5,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from aag_cad.language import Language, figure, say, says
 from aag_cad.parts.model import Bolt, Gridshell, JointKind, Rod, Screw, Shell
-from assembly.base.language import Language, say, says
-from assembly.base.names import figure, part_name
+from assembly.base.names import part_name
 from assembly.base.steps import Phase
 
 Fastener: TypeAlias = Bolt | Screw | Rod

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from aag_cad.findings import Finding, Severity
-from assembly.base.language import Language, say
+from aag_cad.language import Figure, Language, say
 from assembly.base.mark_ranges import short_mark
 from assembly.transport.cut_pieces import Divisible, Run, run_between, run_splices
 from assembly.transport.lifting import LEAST_MARGIN, Lifting
@@ -17,7 +17,7 @@ _UP_TO = 10.0
 _AXES = ("length", "width", "height", "mass")
 
 
-def _words(language: Language, key: str, **figures: object) -> str:
+def _words(language: Language, key: str, **figures: Figure) -> str:
     return say(language, f"segments.finding.{key}", **figures)
 
 

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TypeAlias
 
+from aag_cad.language import Figure, Language, say, says
 from aag_cad.parts.marks import parse_mark
-from assembly.base.language import Language, say, says
 from assembly.base.mark_ranges import joined_ranges, short_mark
 from assembly.transport.lifting import Brace
 from assembly.transport.search import Limits
@@ -83,7 +83,7 @@ def splice_rows(plan: Segmentation) -> list[Row]:
     ]
 
 
-def _say(language: Language, key: str, **figures: object) -> str:
+def _say(language: Language, key: str, **figures: Figure) -> str:
     return say(language, f"segments.{key}", **figures)
 
 
@@ -123,7 +123,7 @@ def _lifting(segment: Segment, language: Language) -> str:
 def splice_words(splice: Splice, language: Language = "en") -> str:
     """Return what a splice is made of."""
     joint = short_mark(splice.joint) if splice.joint else ""
-    figures = {"length": _number(splice.length), "bolts": splice.bolts, "diameter": splice.diameter}
+    figures: dict[str, Figure] = {"length": _number(splice.length), "bolts": splice.bolts, "diameter": splice.diameter}
     return _say(language, f"value.{splice.kind}", joint=joint, **figures)
 
 

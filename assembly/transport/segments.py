@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from aag_cad.findings import Finding
+from aag_cad.language import Language
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Frame, Gridshell, Shell
 from aag_cad.parts.products import product_key
 from aag_cad.parts.quantities import material
 from aag_cad.units import Floats, Vector, vector
-from assembly.base.language import Language
 from assembly.transport.cut_pieces import Divisible, PlankPiece, Run, cut_stops, divisible, run_between, run_splices
 from assembly.transport.findings import cut_finding, hopeless_finding, lifting_finding, splice_finding, wish
 from assembly.transport.lifting import STIFF_GEODESICS, Brace, Lifting, braces, lifting_points, standing_props

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from aag_cad.findings import Finding
+from aag_cad.language import Figure, Language, say
 from aag_cad.mechanics.frame.factor import SingularError, factor, lowest_pairs
 from aag_cad.mechanics.frame.model import Dof, FrameModel, Spring, Support
 from aag_cad.mechanics.frame.shell import shell_frame
@@ -29,7 +30,6 @@ from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.parts.products import product_key
 from aag_cad.units import Floats, Ints, Vector
-from assembly.base.language import Language, say
 from assembly.locking.model import GRAVITY
 from assembly.locking.order import SAG_LIMIT, SOFT, soft_mode_count
 from assembly.transport.frame import BracedFrame, braced_frame
@@ -333,7 +333,7 @@ def stiffness_finding(
     if stiffness.displacement <= limit:
         return None
 
-    def words(key: str, **figures: object) -> str:
+    def words(key: str, **figures: Figure) -> str:
         return say(language, f"segments.stiffness.{key}", **figures)
 
     hold = max(stiffness.holds, key=lambda hold: hold.braced.displacement)

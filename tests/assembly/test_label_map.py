@@ -6,10 +6,10 @@ from xml.etree import ElementTree
 
 import pytest
 
+from aag_cad.language import LANGUAGES, Language
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Shell
 from assembly.base.errors import PlanError
-from assembly.base.language import LANGUAGES, Language
 from assembly.base.mark_ranges import short_mark
 from assembly.drawing.svg import Box, Label, label_box
 from assembly.pictures.label_map import MAP_SIZE, label_map_svg

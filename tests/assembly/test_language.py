@@ -9,11 +9,11 @@ from xml.etree import ElementTree
 
 import pytest
 
+from aag_cad.language import LANGUAGES, Language, figure, language_of, say, says, words_table
 from aag_cad.parts.model import ClampingBar, Gridshell, Mullion, Plank, Shell, Strap, Strip, all_parts
 from aag_cad.parts.products import product_name
 from aag_cad.resources import template
-from assembly.base.language import LANGUAGES, Language, language_of, say, says, words_table
-from assembly.base.names import figure, part_name, phase_name
+from assembly.base.names import part_name, phase_name
 from assembly.base.steps import DOWN_PHASES, PHASES, UP_PHASES, Phase, Plan
 from assembly.booklet.cards import qr_text, step_card, totals
 from assembly.booklet.gantt import gantt_svg

@@ -7,10 +7,10 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from aag_cad.language import LANGUAGES
 from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
-from assembly.base.language import LANGUAGES
 from assembly.base.mark_ranges import short_mark
 from assembly.drawing.svg import Box, Label, label_box
 from assembly.laying.flattening import FlatState, flat_state

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from aag_cad.errors import AagError
 from aag_cad.findings import Finding
+from aag_cad.language import LANGUAGES
 from aag_cad.parts.model import Gridshell
 from assembly.base.errors import PlanError
-from assembly.base.language import LANGUAGES
 from assembly.base.steps import PHASES, Plan, Step
 from assembly.plan.assembly_plan import plan_json, plan_of, read_plan
 

@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+from aag_cad.language import LANGUAGES, Language
 from aag_cad.parts.model import Gridshell
-from assembly.base.language import LANGUAGES, Language
 from assembly.pictures.segment_picture import segment_svg
 from assembly.transport.search import Limits
 from assembly.transport.segment_sheet import (
