@@ -14,8 +14,9 @@ from aag_cad.mechanics.checks.lamella import LamellaStress, lamella_stress
 from aag_cad.mechanics.checks.supports import footing_checks
 from aag_cad.parts.bolting import axis_distance, bolt_holes, bolts_by_joint
 from aag_cad.parts.clash import clashes
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import Gridshell, Plank, Shell, all_joints, all_parts
+from aag_cad.parts.model import Gridshell, Plank, Shell, all_joints
 from aag_cad.shop.purchases import Purchases
 from aag_cad.units import Floats, deg_per_m
 
@@ -103,7 +104,7 @@ def joint_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     """Yield AAG501 (part without joint), AAG502 (joint whose part is missing) and AAG503 (joint without fastener)."""
     joints = all_joints(gridshell)
     named = {mark: joint.mark for joint in joints for mark in (*joint.members, *joint.fasteners)}
-    present = {part.mark for part in all_parts(gridshell)}
+    present = index_of(gridshell).parts.keys()
     for mark in sorted(present - set(named)):
         yield Finding("AAG501", "error", mark, "joints", 0, 1, "", "give it a joint or leave it out")
     for mark in sorted(set(named) - present):

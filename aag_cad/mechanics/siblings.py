@@ -20,6 +20,7 @@ from aag_cad.errors import NetworkError
 from aag_cad.geometry.framed import curvatures_at, frames_at, nearest_station
 from aag_cad.geometry.surface import dot
 from aag_cad.parts.forming import formed_points, plank_axes
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Beam, Gridshell, Plank
 from aag_cad.units import Floats, Ints
 
@@ -155,7 +156,7 @@ def coupled_pair(beam: Beam, left: Plank, right: Plank) -> CoupledPair:
 def coupled_pairs(gridshell: Gridshell) -> Iterator[CoupledPair]:
     """Yield the couplings of every beam of every shell."""
     for shell in gridshell.shells:
-        planks = {plank.mark: plank for plank in shell.planks}
+        planks = index_of(shell).planks
         for beam in shell.beams:
             yield coupled_pair(beam, *(planks[mark] for mark in beam.planks))
 

@@ -19,6 +19,7 @@ from aag_cad.network.ridge import ridge_distance
 from aag_cad.parts.clearance import Obstacle, is_free, obstacles, placed_points
 from aag_cad.parts.fasteners import axis_frame, wood_screw
 from aag_cad.parts.forming import axis_piercings
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import Mark, parse_mark
 from aag_cad.parts.members import Drilling, curve_mark, drilled, grouped, with_joints
 from aag_cad.parts.model import (
@@ -334,7 +335,7 @@ def _fixed_line(
 
 def _lines(design: Design, network: CurveNetwork, shell: Shell) -> tuple[list[_Line], list[Strip]]:
     items = {item.id.number: item for item in network.curves if item.id.family == "G"}
-    planks = {plank.mark: plank for plank in shell.planks}
+    planks = index_of(shell).planks
     mullions, clamps = _bars(design, list(items.values()))
     beside: dict[int, list[str]] = {number: [] for number in items}
     strips = []

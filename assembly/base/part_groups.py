@@ -7,8 +7,8 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from aag_cad.parts.assemblies import beam_of_parts
-from aag_cad.parts.model import Joint, JointKind, Part, Shell, shell_parts
+from aag_cad.parts.index import index_of
+from aag_cad.parts.model import Joint, JointKind, Part, Shell
 from assembly.base.errors import PlanError
 
 Group: TypeAlias = Literal["beams", "studs", "edges", "outside", "inside", "feet", "standing", "cover"]
@@ -43,7 +43,7 @@ def _refuse_strays(shell: Shell, kit: Kit) -> None:
     groups = (*kit.beams.values(), *kit.studs.values(), *kit.edges.values(), *kit.outside.values())
     placed = {mark for group in (*groups, *kit.inside.values()) for mark in group}
     placed |= {*kit.studs, *kit.edges, *kit.outside, *kit.feet, *kit.standing, *kit.cover}
-    strays = sorted({part.mark for part in shell_parts(shell)} - placed)
+    strays = sorted(index_of(shell).parts.keys() - placed)
     if strays:
         raise PlanError(
             f"{', '.join(strays[:5])}{' and more' if len(strays) > 5 else ''}: {len(strays)} parts that no joint of "
@@ -64,7 +64,7 @@ def driven_from_outside(shell: Shell) -> set[str]:
 def _homes(shell: Shell, block_beam: dict[str, str]) -> dict[tuple[Group, str], list[str]]:
     """Return the fasteners by what they are added with: a group of the kit and the mark of a piece in it."""
     families = {plank.mark: plank.family for plank in shell.planks}
-    bolts, studs = {bolt.mark for bolt in shell.bolts}, {stud.mark for stud in shell.studs}
+    bolts, studs = index_of(shell).bolts.keys(), index_of(shell).studs.keys()
     outer = driven_from_outside(shell)
     straps = {strap.mark for strap in shell.straps}
 
@@ -97,7 +97,7 @@ def _marks(parts: Iterable[Part]) -> tuple[str, ...]:
 
 def shell_kit(shell: Shell) -> Kit:
     """Return what goes with what in a shell; PlanError with the marks of parts that no joint names."""
-    home = beam_of_parts(shell)
+    home = index_of(shell).beam_of
     block_beam = {block.mark: home[block.mark] for block in shell.blocks if block.mark in home}
     homes = _homes(shell, block_beam)
 

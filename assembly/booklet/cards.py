@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from aag_cad.language import Language, figure, say, says, words_table
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import shell_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Bolt, Gridshell, Part, Plank, Rod, Screw, Shell, all_parts, shell_parts
@@ -157,7 +158,7 @@ def step_table(gridshell: Gridshell, plan: Plan, step: Step, weights: Weights) -
         case "take off beams" | "take off geodesics":
             return _taken_table(step, weights, language)
         case "passports":
-            parts = {part.mark: part for part in shell_parts(shells[step.shell])}
+            parts = index_of(shells[step.shell]).parts
             return _table(language, "measured", part_rows(parts, step.assemblies, language=language))
         case _:
             return None

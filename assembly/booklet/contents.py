@@ -7,7 +7,8 @@ from typing import Any, Literal, TypeAlias
 
 from aag_cad.findings import worst_first
 from aag_cad.language import Language
-from aag_cad.parts.model import Gridshell, all_parts
+from aag_cad.parts.index import index_of
+from aag_cad.parts.model import Gridshell
 from assembly.base.steps import Plan, Step
 from assembly.booklet.cards import Weights, step_card, totals
 from assembly.booklet.gantt import gantt_svg
@@ -120,7 +121,7 @@ def _cards(
 ) -> Iterator[dict[str, Any]]:
     """Yield the cards of all steps; their pictures are added to ``pictures``, those of steps alike only once."""
     gridshell, drawn = sheets.gridshell, dict[tuple[object, ...], list[str]]()
-    parts = {part.mark: part for part in all_parts(gridshell)}
+    parts = index_of(gridshell).parts
     for step in plan.steps:
         card = step_card(gridshell, plan, step, parts, common.weights)
         key = picture_key(sheets, step)

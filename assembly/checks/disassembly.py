@@ -8,7 +8,8 @@ from typing import TypeAlias
 import networkx as nx
 import numpy as np
 
-from aag_cad.parts.model import Bolt, Gridshell, Joint, Part, Shell, all_joints, all_parts
+from aag_cad.parts.index import index_of
+from aag_cad.parts.model import Bolt, Gridshell, Joint, Part, Shell, all_joints
 from aag_cad.units import Floats
 from assembly.base.steps import Plan, Step
 from assembly.checks.plan import numbering_problems
@@ -31,11 +32,11 @@ def _forced(plan: Plan) -> dict[str, set[str]]:
 
 def _once(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
     """Yield what does not leave once: parts, beams off the flat shell, shells off their feet, planks measured."""
-    planks = {plank.mark for shell in gridshell.shells for plank in shell.planks}
+    planks = index_of(gridshell).planks.keys()
     shells = {shell.mark for shell in gridshell.shells}
-    beams = {beam.mark for shell in gridshell.shells for beam in shell.beams}
+    beams = index_of(gridshell).beams.keys()
     wanted = (
-        ("leaves", {part.mark for part in all_parts(gridshell)}, Counter(m for step in plan.steps for m in step.marks)),
+        ("leaves", index_of(gridshell).parts.keys(), Counter(m for step in plan.steps for m in step.marks)),
         ("is taken off", beams, _moved(plan, "take off beams")),
         ("is measured", planks, _moved(plan, "passports")),
         *(
@@ -99,8 +100,8 @@ def _fastened(gridshell: Gridshell, leaves: dict[str, _Place], lying: dict[str, 
             if fastener in leaves and then is not None:
                 yield f"{fastener} holds {member}", leaves[fastener], then
     for shell in gridshell.shells:
-        bolts = {bolt.mark: bolt for bolt in shell.bolts}
-        planks = {plank.mark: plank for plank in shell.planks}
+        bolts = index_of(shell).bolts
+        planks = index_of(shell).planks
         layer = {beam.mark: beam.layer for beam in shell.beams}
         for joint in (joint for joint in shell.joints if joint.kind == "AA"):
             beams = sorted({planks[m].beam for m in joint.members if m in planks}, key=lambda mark: layer[mark])
@@ -115,7 +116,7 @@ def _fastened(gridshell: Gridshell, leaves: dict[str, _Place], lying: dict[str, 
 
 def _covered(gridshell: Gridshell, lying: dict[str, _Place]) -> Iterator[_Rule]:
     """Yield the order of planks that cross; edge planks are drawn out lengthwise between the others."""
-    planks = {plank.mark: plank for shell in gridshell.shells for plank in shell.planks}
+    planks = index_of(gridshell).planks
     for joint in (joint for shell in gridshell.shells for joint in shell.joints):
         members = [mark for mark in joint.members if mark in lying]
         for upper, lower in product(members, members):
@@ -158,12 +159,12 @@ def _hanging(plan: Plan, shell: Shell, leaves: dict[str, _Place]) -> Iterator[_R
     lift, hang, lower = ((step[0].id, -1) for step in chain)
     yield f"{shell.mark} is off its feet before it hangs", lift, hang
     yield f"{shell.mark} hangs before it is lowered", hang, lower
-    bracing = {screw.mark for screw in shell.screws} - covering
+    bracing = index_of(shell).screws.keys() - covering
     bracing |= {plank.mark for plank in shell.planks if plank.family == "E"} | {strap.mark for strap in shell.straps}
     for mark in sorted(bracing & set(leaves)):
         yield f"{mark} keeps the shape of {shell.mark} until it hangs", hang, leaves[mark]
         yield f"{mark} must be out before the nodes turn", leaves[mark], lower
-    for mark in sorted({stud.mark for stud in shell.studs} & set(leaves)):
+    for mark in sorted(index_of(shell).studs.keys() & set(leaves)):
         yield f"{mark} holds {shell.mark} until it lies flat", lower, leaves[mark]
     for step in (step for beam in shell.beams for step in _steps(plan, "take off beams", beam.mark)):
         yield f"beams carry {shell.mark} until it lies flat", lower, (step.id, 0)

@@ -3,8 +3,9 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import Footing, Gridshell, Part, Rod, Shell, Shoe, all_parts, ridge_parts, shell_parts
+from aag_cad.parts.model import Footing, Gridshell, Part, Rod, Shell, Shoe, ridge_parts, shell_parts
 from assembly.base.steps import Plan, Step
 from assembly.checks.stability import ancestors, locking_problems, prop_problems, travel_problems
 from assembly.locking.order import LockingOrder
@@ -26,7 +27,7 @@ def numbering_problems(plan: Plan) -> Iterator[str]:
 
 
 def _once(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
-    wanted = {part.mark for part in all_parts(gridshell)}
+    wanted = index_of(gridshell).parts.keys()
     placed = Counter(mark for step in plan.steps for mark in step.marks)
     for mark in sorted(wanted - set(placed)):
         yield f"{mark}: no step adds it"
@@ -35,7 +36,7 @@ def _once(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
     for mark, count in sorted(placed.items()):
         if count > 1:
             yield f"{mark}: {count} steps add it, allowed 1"
-    beams = {beam.mark for shell in gridshell.shells for beam in shell.beams}
+    beams = index_of(gridshell).beams.keys()
     moved = Counter(mark for step in plan.steps for mark in step.assemblies if mark in beams)
     for mark in sorted(beams):
         if moved[mark] != 1:
@@ -63,7 +64,7 @@ def _layering(shell: Shell, places: dict[str, tuple[Step, int]]) -> Iterator[tup
     The lower one comes first; where one of them is slid in, it comes after the one that it passes.
     """
     slid = {mark for mark, (step, _) in places.items() if step.phase == "slide"}
-    planks = {plank.mark: plank for plank in shell.planks}
+    planks = index_of(shell).planks
     for joint in shell.joints:
         members = [planks[mark] for mark in joint.members if mark in planks and planks[mark].family != "E"]
         for lower in members:
@@ -77,7 +78,7 @@ def _layering(shell: Shell, places: dict[str, tuple[Step, int]]) -> Iterator[tup
 def _covering(shell: Shell) -> set[str]:
     """Return the marks of what covers a shell: bars, strips, blocks on geodesics, and the screws of all these."""
     joints = [joint for joint in shell.joints if joint.kind == "cover"]
-    blocks = {block.mark for block in shell.blocks}
+    blocks = index_of(shell).blocks.keys()
     held = {mark for joint in joints for mark in joint.fasteners}
     held |= {joint.mark for joint in joints if joint.mark in blocks}
     pieces: tuple[Part, ...] = (*shell.mullions, *shell.strips, *shell.clamps)
@@ -94,8 +95,8 @@ def _orders(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]]) -> It
     if len(hoists) != 1 or not stands:
         return
     hoist = hoists[0]
-    screws, bolts = {screw.mark for screw in shell.screws}, {bolt.mark for bolt in shell.bolts}
-    blocks, studs = {block.mark for block in shell.blocks}, {stud.mark for stud in shell.studs}
+    screws, bolts = index_of(shell).screws.keys(), index_of(shell).bolts.keys()
+    blocks, studs = index_of(shell).blocks.keys(), index_of(shell).studs.keys()
     for plank in shell.planks:
         if plank.beam and plank.mark in made and plank.beam in at:
             yield f"{plank.mark} is part of {plank.beam}", made[plank.mark], at[plank.beam]

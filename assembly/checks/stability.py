@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Shell
 from aag_cad.units import Floats
@@ -58,7 +59,7 @@ def _stand_problems(
     for stand in stands:
         if parted not in forced:
             yield f"{name}: stands in step {stand.id}, but nothing forces the parting of {shell.mark} before it"
-        if len(stand.props) < _LEAST_PROPS or not set(stand.props) <= {joint.mark for joint in shell.joints}:
+        if len(stand.props) < _LEAST_PROPS or not set(stand.props) <= index_of(shell).joints.keys():
             yield f"{name}: step {stand.id} names {len(stand.props)} props of {shell.mark}, expected at least 2"
         elif not _held(shell, segment, stand.props):
             yield f"{name}: its centre of gravity is outside its feet and the props of step {stand.id}: it falls"
@@ -136,7 +137,7 @@ def prop_problems(plan: Plan, order: LockingOrder) -> Iterator[str]:
 def _fixed_in(plan: Plan, gridshell: Gridshell, order: LockingOrder) -> dict[str, Step]:
     """Return the step in which each flat plank of a shell gets its screws into blocks."""
     shell = next(shell for shell in gridshell.shells if shell.mark == order.shell)
-    screws = {screw.mark for screw in shell.screws}
+    screws = index_of(shell).screws.keys()
     members = {mark: joint.members for joint in shell.joints for mark in joint.fasteners if joint.kind != "cover"}
     flat = {plank.mark for plank in shell.planks if not plank.upright}
     found: dict[str, Step] = {}

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Beam, CouplingBlock, Plank, Shell
 from assembly.drawing.svg import Style, circle, group, label_svg, placed_labels, rectangle, svg, text
 
@@ -52,8 +53,8 @@ def beam_strips_svg(shell: Shell, beams: Sequence[str], width: float) -> str:
     Lengths are to one scale for the shell; the gap and the planks' thickness are drawn wider than they are.
     """
     scale = (width - _LEFT - _RIGHT) / max(beam.curve.length for beam in shell.beams)
-    planks, blocks = {plank.mark: plank for plank in shell.planks}, {block.mark: block for block in shell.blocks}
-    by_mark = {beam.mark: beam for beam in shell.beams}
+    planks, blocks = index_of(shell).planks, index_of(shell).blocks
+    by_mark = index_of(shell).beams
     items: list[str] = []
     for i, mark in enumerate(beams):
         beam = by_mark[mark]

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from aag_cad.language import Language, figure, say
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Bolt, CrossSection, Shell
 from assembly.drawing.svg import Style, circle, group, line, polygon, rectangle, svg, text
 
@@ -56,7 +57,7 @@ def _bolt(y: float, bolt: Bolt) -> str:
 def node_section_svg(shell: Shell, *, language: Language = "en") -> str:
     """Return the section through a crossing of two beams, drawn as if both ran the same way, at 1 : 5."""
     stud, plank = shell.studs[0], next(plank for plank in shell.planks if plank.upright)
-    bolts = {bolt.mark: bolt for bolt in shell.bolts}
+    bolts = index_of(shell).bolts
     bolt = next(bolts[joint.fasteners[0]] for joint in shell.joints if joint.mark == stud.mark)
     section = plank.blank.section
     centre, long, flat = _UNIT * stud.length / 2.0 + 20.0, _UNIT * stud.length, _UNIT * stud.across_flats
@@ -74,7 +75,7 @@ def node_section_svg(shell: Shell, *, language: Language = "en") -> str:
 def block_section_svg(shell: Shell, *, language: Language = "en") -> str:
     """Return the section through a geodesic on a lower beam, at 1 : 5: coupling block, its bolt and the screw."""
     block, screw = shell.blocks[0], shell.screws[0]
-    bolts = {bolt.mark: bolt for bolt in shell.bolts}
+    bolts = index_of(shell).bolts
     fasteners = next(joint.fasteners for joint in shell.joints if block.mark in joint.members)
     section = next(plank for plank in shell.planks if plank.upright).blank.section
     top, thick, wide, gap = 80.0, _UNIT * section.thickness, _UNIT * section.width, _UNIT * block.thickness

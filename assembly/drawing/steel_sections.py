@@ -8,6 +8,7 @@ from aag_cad.geometry.framed import frames_at
 from aag_cad.language import Language, figure, say
 from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
 from aag_cad.parts.forming import formed_points
+from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Blade, Bolt, FlatBar, FoldedPlate, Frame, Gridshell, Joint, Plank, Shell, Shoe, Strap
 from aag_cad.parts.plates import plate_rings
@@ -107,7 +108,7 @@ def _sheet(items: Sequence[str], points: Floats, words: Sequence[tuple[Floats, s
 
 
 def _members(shell: Shell, joint: Joint) -> list[Plank]:
-    planks = {plank.mark: plank for plank in shell.planks}
+    planks = index_of(shell).planks
     return [planks[mark] for mark in joint.members if mark in planks]
 
 

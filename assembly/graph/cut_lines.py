@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Beam, Joint, JointStation, Plank, Shell
 from assembly.base.errors import PlanError
 
@@ -141,7 +142,7 @@ def tracks(shell: Shell) -> Tracks:
     if len(geodesics) < 3:
         raise PlanError(f"{shell.mark}: {len(geodesics)} geodesics, at least 3 to cut along; carry the shell whole")
     lines = {plank.mark: i for i, plank in enumerate(geodesics, start=1)}
-    joints = {joint.mark: joint for joint in shell.joints}
+    joints = index_of(shell).joints
     crossing: list[Beam | Plank] = [*shell.beams, *(plank for plank in shell.planks if plank.family == "E")]
     members = tuple(_track(member, joints, lines, geodesics) for member in crossing)
     lone = [track.mark for track in members if not track.crossings]

@@ -7,7 +7,7 @@ from typing import NotRequired, TypedDict
 import networkx as nx
 import numpy as np
 
-from aag_cad.parts.assemblies import beam_of_parts
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import (
@@ -133,7 +133,7 @@ def _ties(joint: Joint, beams: Mapping[str, str]) -> Iterator[tuple[str, str, Ed
 
 def _crossings(shell: Shell) -> Iterator[tuple[str, str, JointEdge]]:
     """Yield the planks that lie on one another, each pair of neighbours in height once, and those that meet."""
-    stations = {(p.mark, place.joint): place.station for p in shell.planks for place in p.joints}
+    stations = index_of(shell).stations
     for joint, lower, upper, lies in stacked_planks(shell):
         for pair in product(lower, upper):
             low, high = pair if lies else sorted(pair)
@@ -177,7 +177,7 @@ def _add_ties(graph: "nx.MultiGraph[str]", joints: tuple[Joint, ...], beams: Map
 
 
 def _add_parts(graph: "nx.MultiGraph[str]", gridshell: Gridshell, parts: tuple[Part, ...], shell: Shell | None) -> None:
-    homes = beam_of_parts(shell) if shell else {}
+    homes = index_of(shell).beam_of if shell else {}
     layers: dict[str, int] = {}
     if shell:
         of_beam = {beam.mark: beam.layer for beam in shell.beams}

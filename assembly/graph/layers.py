@@ -8,6 +8,7 @@ from itertools import pairwise
 import networkx as nx
 import numpy as np
 
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Joint, Plank, Shell
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
@@ -60,7 +61,7 @@ def stacked_planks(shell: Shell) -> Iterator[tuple[Joint, tuple[str, ...], tuple
 
     Members whose centres differ by less than 1 mm meet end to end; for them the last is False.
     """
-    unit_of = {plank.mark: lying_unit(plank) for plank in shell.planks}
+    unit_of = index_of(shell).unit_of
     levels = crossing_levels(shell)
     for joint in shell.joints:
         units: dict[str, list[Level]] = defaultdict(list)
@@ -79,7 +80,7 @@ def layer_precedence(shell: Shell) -> "nx.DiGraph[str]":
     What lies below must be laid first. Members whose centres differ by less than 1 mm meet end to end and have no
     order. PlanError with every circle in which the members are woven, so that none of them can be the lowest.
     """
-    unit_of = {plank.mark: lying_unit(plank) for plank in shell.planks}
+    unit_of = index_of(shell).unit_of
     crossings = [
         Crossing(joint.mark, unit_of[lower[0]], unit_of[upper[0]], 0.0, 0.0)
         for joint, lower, upper, lies in stacked_planks(shell)

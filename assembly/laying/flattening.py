@@ -16,6 +16,7 @@ from scipy.sparse.linalg import splu
 
 from aag_cad.findings import Finding, Severity
 from aag_cad.language import Language, say
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Plank, Shell, Timber
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
@@ -98,7 +99,7 @@ def _stiffness(shell: Shell, arrays: Arrays) -> Stiffness:
 
 def beam_width(shell: Shell) -> float:
     """Return the width of a coupled beam from outside to outside of its planks, mm."""
-    planks = {plank.mark: plank for plank in shell.planks}
+    planks = index_of(shell).planks
     left, right = (planks[mark] for mark in shell.beams[0].planks)
     return float(np.linalg.norm(left.curve.points[0] - right.curve.points[0])) + left.blank.section.thickness
 
@@ -170,7 +171,7 @@ def outline_of(member: FlatMember) -> Floats:
 
 def _geodesics(shell: Shell, net: Net, at: Floats) -> tuple[list[FlatMember], dict[str, Floats], float]:
     """Return the geodesics on the floor, their foot joints, and the largest offset of a crossing."""
-    planks: dict[str, Plank] = {plank.mark: plank for plank in shell.planks}
+    planks: dict[str, Plank] = index_of(shell).planks
     feet = {joint.mark for joint in shell.joints if joint.kind == "foot"}
     members: list[FlatMember] = []
     foot: dict[str, Floats] = {}

@@ -12,6 +12,7 @@ import numpy as np
 
 from aag_cad.geometry.framed import frames_at
 from aag_cad.mechanics.siblings import geodesic_turn, plane_curve
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Beam, Joint, Plank, Shell
 from aag_cad.units import Floats, Ints
 from assembly.base.errors import PlanError
@@ -224,7 +225,7 @@ def shell_net(shell: Shell) -> Net:
     for chain in chains:
         np.add.at(start, chain.points, begin[chain.mark])
         np.add.at(met, chain.points, 1.0)
-    by_mark, beams = {chain.mark: chain for chain in chains}, {beam.mark: beam for beam in shell.beams}
+    by_mark, beams = {chain.mark: chain for chain in chains}, index_of(shell).beams
     scissors = (_scissor(joint, *pairs[joint.mark], by_mark, beams) for joint in kept)
     rays = (_ray(plank, pairs, by_mark, left_open) for plank in geodesics)
     return Net(start / met[:, None], chains, tuple(scissors), tuple(rays), tuple(sorted(left_open)))

@@ -18,6 +18,7 @@ from aag_cad.mechanics.frame.model import DOFS, Support
 from aag_cad.mechanics.frame.shell import ShellFrame, shell_frame
 from aag_cad.mechanics.frame.statics import held_part, mechanism_error
 from aag_cad.mechanics.frame.system import FrameSystem, frame_system, mass_matrix, part_stiffness
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Shell, Timber
 from aag_cad.units import Floats, Ints
@@ -150,7 +151,7 @@ def _grid_frame(
         if node not in slaves
     ]
     system = frame_system(replace(frame.model, supports=tuple(held)))
-    beams = {beam.mark for beam in shell.beams}
+    beams = index_of(shell).beams.keys()
     places: dict[str, list[int]] = {_GRID: []}
     for i, member in enumerate(frame.members):
         places.setdefault(_GRID if member in beams else member, []).append(i)
@@ -173,7 +174,7 @@ def locking_model(
     kit, groups = shell_kit(shell), geodesic_groups(shell, pairs)
     lower = kit.lower_edges
     upper = tuple(mark for mark in kit.edges if mark not in lower)
-    studs = {stud.mark for stud in shell.studs}
+    studs = index_of(shell).studs.keys()
     feet = tuple(joint.mark for joint in shell.joints if joint.kind == "boundary" and set(joint.members) & set(lower))
     if not feet or not groups:
         what = "joint of a beam on a lower edge plank" if groups else "geodesic"

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from aag_cad.language import Language
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import (
@@ -18,7 +19,6 @@ from aag_cad.parts.model import (
     Shoe,
     Strap,
     Strip,
-    all_parts,
     shell_parts,
 )
 from aag_cad.units import Floats
@@ -119,7 +119,7 @@ def _in_place(plan: Plan, gridshell: Gridshell) -> dict[str, frozenset[str]]:
 def _still_there(plan: Plan, gridshell: Gridshell) -> dict[str, frozenset[str]]:
     """Return for each step id of taking down the parts that are still in their places before it."""
     parts_of = {mark: marks for shell in gridshell.shells for mark, marks in shell_kit(shell).beams.items()}
-    there = {part.mark for part in all_parts(gridshell)}
+    there = set(index_of(gridshell).parts)
     found = {}
     for step in plan.steps:
         found[step.id] = frozenset(there)
@@ -130,7 +130,7 @@ def _still_there(plan: Plan, gridshell: Gridshell) -> dict[str, frozenset[str]]:
 
 def _standing(plan: Plan, gridshell: Gridshell, down: bool) -> dict[str, frozenset[str]]:
     """Return for each step id the planks of the shells that stand on the site before it, in whole or in part."""
-    planks = {shell.mark: {plank.mark for plank in shell.planks} for shell in gridshell.shells}
+    planks = {shell.mark: index_of(shell).planks.keys() for shell in gridshell.shells}
     standing = set[str]().union(*planks.values()) if down else set[str]()
     found = {}
     for step in plan.steps:

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from aag_cad.language import Language, say
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
@@ -82,7 +83,7 @@ def _name(mark: str) -> str:
 
 def _crossing(shell: Shell) -> dict[str, tuple[str, ...]]:
     """Return the beams and flat planks that meet at each joint."""
-    unit = {plank.mark: plank.beam or plank.mark for plank in shell.planks}
+    unit = index_of(shell).unit_of
     return {j.mark: tuple(dict.fromkeys(unit[mark] for mark in j.members if mark in unit)) for j in shell.joints}
 
 

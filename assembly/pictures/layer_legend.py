@@ -12,6 +12,7 @@ from scipy.spatial import ConvexHull
 from aag_cad.geometry.framed import frames_at
 from aag_cad.geometry.surface import unit
 from aag_cad.language import Language, figure, say
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Beam, CouplingBlock, Joint, Plank, Shell, Stud
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
@@ -65,7 +66,7 @@ def _beside(stud: Stud, joint: Joint, shell: Shell) -> tuple[Beam, Beam, Couplin
     beams = sorted((beam for beam in shell.beams if set(beam.planks) & set(joint.members)), key=lambda beam: beam.layer)
     if len(beams) != 2:
         return None
-    blocks = {block.mark: block for block in shell.blocks}
+    blocks = index_of(shell).blocks
     joints = {joint.mark: joint for joint in shell.joints if joint.kind == "AG"}
     here = next(place.station for place in beams[0].joints if place.joint == stud.mark)
     near = sorted((abs(p.station - here), p.joint, p.station - here) for p in beams[0].joints if p.joint in joints)
@@ -85,7 +86,7 @@ def _tangent(member: Beam | Plank, joint: str) -> Floats:
 
 def _middle_node(shell: Shell) -> _Node:
     """Return the node nearest to the middle of a shell that has a geodesic beside it; PlanError without one."""
-    joints = {joint.mark: joint for joint in shell.joints}
+    joints = index_of(shell).joints
     studs = sorted(shell.studs, key=lambda stud: stud.mark)
     flat = shell_view(shell)(np.array([stud.frame.origin for stud in studs]).reshape(-1, 3))[:, :2]
     away = np.linalg.norm(flat - flat.mean(axis=0), axis=1).round(3) if len(studs) else flat

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from aag_cad.language import Language, say, says
+from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Plank, Shell
 from aag_cad.units import Floats
@@ -70,7 +71,7 @@ def _part_of(outline: Outline, plank: Plank, piece: PlankPiece | None) -> Floats
 
 def _held(shell: Shell, segment: Segment) -> Iterator[tuple[Plank, PlankPiece | None]]:
     """Yield the planks of a segment, whole ones without a piece."""
-    planks, own = {plank.mark: plank for plank in shell.planks}, set(segment.parts)
+    planks, own = index_of(shell).planks, set(segment.parts)
     yield from ((plank, None) for plank in shell.planks if plank.mark in own)
     yield from ((planks[piece.plank], piece) for piece in segment.pieces)
 

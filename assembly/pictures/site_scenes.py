@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from aag_cad.language import Language
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Gridshell, Shell, shell_parts
 from assembly.base.steps import Step
 from assembly.drawing.outline import Outline, elevation_outline, vault_outline
@@ -70,7 +71,7 @@ def ridge_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
     outline, planks = sheets.ridges[step.assemblies], ridge_planks(gridshell, step.assemblies)
     blades = [blade for blade in gridshell.blades if blade.mark in step.marks]
     scene = Scene(
-        there={plank.mark for shell in gridshell.shells for plank in shell.planks},
+        there=index_of(gridshell).planks.keys(),
         worked_on=planks,
         new=[blade.mark for blade in blades],
         names={mark: mark for mark in planks},

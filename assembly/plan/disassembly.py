@@ -9,6 +9,7 @@ import numpy as np
 
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.language import Figure, Language, say, says
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Bolt, Gridshell, Rod, Shell, Timber
 from aag_cad.units import MM_PER_M
@@ -144,8 +145,8 @@ class _Studs:
 
 def _stud_bolts(shell: Shell) -> _Studs:
     """Return whose the bolts of each stud are: of the beam that is nearest along the normal."""
-    unit_of = {plank.mark: lying_unit(plank) for plank in shell.planks}
-    bolts, levels = {bolt.mark: bolt for bolt in shell.bolts}, crossing_levels(shell)
+    unit_of = index_of(shell).unit_of
+    bolts, levels = index_of(shell).bolts, crossing_levels(shell)
     found = _Studs(defaultdict(list), defaultdict(list), defaultdict(list))
     for joint in (joint for joint in shell.joints if joint.kind == "AA"):
         heights = [(level.height, unit_of[level.mark]) for level in levels[joint.mark] if level.mark in unit_of]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from aag_cad.design_making import Minutes
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import (
     Blade,
     Bolt,
@@ -29,7 +30,6 @@ from aag_cad.parts.model import (
     Strap,
     Strip,
     Stud,
-    all_parts,
 )
 from aag_cad.parts.quantities import sizes
 from aag_cad.units import MM_PER_M
@@ -74,14 +74,14 @@ class _Lengths:
 
 
 def _bolt_counts(shell: Shell) -> dict[JointKind, int]:
-    bolts, counts = {bolt.mark for bolt in shell.bolts}, Counter[JointKind]()
+    bolts, counts = index_of(shell).bolts.keys(), Counter[JointKind]()
     for joint in shell.joints:
         counts[joint.kind] += sum(mark in bolts for mark in joint.fasteners)
     return dict(counts)
 
 
 def _lengths(gridshell: Gridshell, plan: Plan) -> _Lengths:
-    parts = {part.mark: part for part in all_parts(gridshell)}
+    parts = index_of(gridshell).parts
     long = {mark: sizes(part)[0] for mark, part in parts.items() if isinstance(part, _LONG)}
     beams = {beam.mark: beam.curve.length for shell in gridshell.shells for beam in shell.beams}
     stands = Counter(mark for step in plan.steps if step.phase == "stand" for mark in step.assemblies)

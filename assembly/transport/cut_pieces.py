@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from aag_cad.parts.forming import formed_points
+from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import shell_mesh
 from aag_cad.parts.model import Beam, Bolt, Joint, Part, Plank, Screw, Shell, Strap, Stud, Timber
 from aag_cad.parts.quantities import mass
@@ -58,12 +59,12 @@ class Divisible:
     @cached_property
     def planks(self) -> dict[str, Plank]:
         """The planks by mark."""
-        return {plank.mark: plank for plank in self.shell.planks}
+        return index_of(self.shell).planks
 
     @cached_property
     def beams(self) -> dict[str, Beam]:
         """The beams by mark."""
-        return {beam.mark: beam for beam in self.shell.beams}
+        return index_of(self.shell).beams
 
     @cached_property
     def small(self) -> dict[str, Part]:

@@ -24,6 +24,7 @@ from aag_cad.mechanics.frame.model import (
     rectangle_section,
 )
 from aag_cad.mechanics.frame.shell import ShellFrame, shell_frame
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Beam, Joint, JointStation, Plank, Shell, Timber
 from aag_cad.units import Floats, Ints, Vector, vector
@@ -120,7 +121,7 @@ def _joint_of_segment(joint: Joint, own: frozenset[str], names: dict[tuple[str, 
 def segment_shell(shell: Shell, splices: Sequence[Splice], segment: Segment) -> Shell:
     """Return a segment as a shell of its own: pieces of planks and beams, and of each joint what the segment has."""
     cuts = {(cut.plank, cut.station): splice.joint for splice in splices for cut in splice.cuts}
-    spans, wholes = _spans(shell, segment), {plank.mark: plank for plank in shell.planks}
+    spans, wholes = _spans(shell, segment), index_of(shell).planks
     left_out = {joint for (plank, _), joint in cuts.items() if joint and plank in spans}
     planks: list[Plank] = []
     names: dict[tuple[str, str], str] = {}

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Plank, Shell
 from assembly.graph.cut_lines import tracks
 from assembly.graph.gridshell_graph import joint_of
@@ -61,14 +62,14 @@ def _reach(
     shell: Shell, line: str, cut: Sequence[Splice], fasteners: Sequence[str], stations: dict[tuple[str, str], float]
 ) -> float:
     """Return how far the two sides of a cut go past its line, mm."""
-    planks = {plank.mark: plank for plank in shell.planks}
+    planks = index_of(shell).planks
     geodesic = planks[line]
     middle = geodesic.curve.point_spline(np.linspace(0.0, geodesic.curve.length, _SAMPLES))
     found = [geodesic.blank.section.width / 2.0]
     for splice in (splice for splice in cut if splice.kind == "plate"):
         end = planks[splice.member].curve.point_spline(splice.cuts[0].station)
         found.append(float(np.linalg.norm(middle - end, axis=1).min()))
-    spliced, joints = {splice.joint for splice in cut}, {joint.mark: joint for joint in shell.joints}
+    spliced, joints = {splice.joint for splice in cut}, index_of(shell).joints
     for joint in (joints[mark] for mark in dict.fromkeys(map(joint_of, fasteners)) if mark not in spliced):
         ends: list[Plank] = [planks[mark] for mark in joint.members if mark in planks and planks[mark].upright]
         at = [(stations[plank.mark, joint.mark], plank.blank.length) for plank in ends]
@@ -81,8 +82,8 @@ def seams(shell: Shell, segmentation: Segmentation | None) -> tuple[Seam, ...]:
     own = segments_of(segmentation, shell.mark)
     if not own or segmentation is None:
         return ()
-    joints = {joint.mark: joint for joint in shell.joints}
-    stations = {(plank.mark, place.joint): place.station for plank in shell.planks for place in plank.joints}
+    joints = index_of(shell).joints
+    stations = index_of(shell).stations
     left = [mark for mark in segmentation.site if joint_of(mark) in joints]
     found = []
     for lower, upper in _neighbours(shell, own):

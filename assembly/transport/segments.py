@@ -8,6 +8,7 @@ import numpy as np
 
 from aag_cad.findings import Finding
 from aag_cad.language import Language
+from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Frame, Gridshell, Shell
 from aag_cad.parts.products import product_key
@@ -86,7 +87,7 @@ def _points(item: Divisible, run: Run, matrix: Floats) -> tuple[dict[str, Floats
     """Return the places (3,) of the studs of a run and of its coupling blocks, in vault coordinates."""
     own, shell = set(run.parts), item.shell
     studs = {stud.mark: np.array(stud.frame.origin) for stud in shell.studs if stud.mark in own}
-    held = {block.mark for block in shell.blocks} & own
+    held = index_of(shell).blocks.keys() & own
     blocks = {joint.mark: np.array(joint.point) for joint in shell.joints if joint.mark in held and joint.kind == "AG"}
     turn, move = matrix[:3, :3], matrix[:3, 3]
     return ({m: turn @ p + move for m, p in studs.items()}, {m: turn @ p + move for m, p in blocks.items()})

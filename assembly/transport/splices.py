@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import Literal
 
 from aag_cad.mechanics.checks.fastener_spacing import bolt_distances
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import CouplingBlock, Hole, Plank, Shell
 from assembly.graph.cut_lines import Crossing, Track, Tracks
 
@@ -85,7 +86,7 @@ def _beam_splice(
     planks: dict[str, Plank],
     blocks: dict[str, CouplingBlock],
 ) -> Splice:
-    bolts = {bolt.mark: bolt for bolt in shell.bolts}
+    bolts = index_of(shell).bolts
     joint = next(joint for joint in shell.joints if joint.mark == crossing.joint)
     taken = [mark for mark in joint.fasteners if mark in bolts]
     diameter = max(bolts[mark].diameter for mark in taken)
@@ -125,8 +126,8 @@ def _beam_splice(
 
 def beam_splices(shell: Shell, grid: Tracks) -> dict[tuple[str, str], Splice]:
     """Return the splice of each beam at each crossing where a cut along the line would cut it, by (beam, joint)."""
-    planks = {plank.mark: plank for plank in shell.planks}
-    blocks = {block.mark: block for block in shell.blocks}
+    planks = index_of(shell).planks
+    blocks = index_of(shell).blocks
     return {
         (track.mark, crossing.joint): _beam_splice(
             shell, track, crossing, grid.lines[crossing.line - 1], planks, blocks
@@ -165,7 +166,7 @@ def edge_splices(shell: Shell, grid: Tracks) -> dict[tuple[str, int], Splice]:
 
     An edge plank that ends in the bay beside the line stays whole and stands out.
     """
-    planks = {plank.mark: plank for plank in shell.planks}
+    planks = index_of(shell).planks
     diameter = max((bolt.diameter for bolt in shell.bolts), default=0.0)
     found = {}
     for track in (track for track in grid.members if track.edge):

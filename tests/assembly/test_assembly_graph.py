@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from aag_cad.geometry.framed import FramedCurve, framed_curve
-from aag_cad.parts.assemblies import beam_of_parts
+from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix, shell_mesh
 from aag_cad.parts.model import Gridshell, Part, Strip, all_joints, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.quantities import mass
@@ -70,7 +70,7 @@ def test_planks_lie_over_planks_of_a_lower_layer_where_their_curves_pass(
     gridshell: Gridshell, graph: "nx.MultiGraph[str]"
 ) -> None:
     points = {joint.mark: np.array(joint.point) for shell in gridshell.shells for joint in shell.joints}
-    planks = {plank.mark: plank for shell in gridshell.shells for plank in shell.planks}
+    planks = index_of(gridshell).planks
     count = 0
     for a, b, edge in graph.edges(data=True):
         if edge["kind"] != "crossing" or not edge["above"]:
@@ -201,4 +201,4 @@ def test_any_number_of_shells_will_do(gridshell: Gridshell, count: int) -> None:
 def test_a_stud_belongs_to_no_single_beam(gridshell: Gridshell) -> None:
     shell = gridshell.shells[0]
     studs = {stud.mark for stud in shell.studs}
-    assert not studs & set(beam_of_parts(shell))
+    assert not studs & set(index_of(shell).beam_of)

@@ -18,7 +18,7 @@ from aag_cad.export.ifc.joints import joint_sides
 from aag_cad.export.ifc.kinds import IFC_KINDS, colour
 from aag_cad.export.ifc.model import IfcOptions, write_ifc
 from aag_cad.export.ifc.options import IfcGeometry, IfcSchema, view_definition
-from aag_cad.parts.assemblies import beam_of_parts
+from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Footing, Gridshell, Joint, Part, Shell, all_joints, all_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key
@@ -138,7 +138,7 @@ def test_a_beam_is_made_of_its_planks_blocks_and_their_bolts(sample: Gridshell, 
     for shell in sample.shells:
         assert whole[shell.mark] == sample.name
         assert all(whole[beam.mark] == shell.mark for beam in shell.beams)
-        home = beam_of_parts(shell)
+        home = index_of(shell).beam_of
         assert all(whole[part.mark] == home.get(part.mark, shell.mark) for part in shell_parts(shell))
     assert all(whole[part.mark] == sample.name for part in (*sample.blades, *sample.bolts))
 
@@ -200,7 +200,7 @@ def test_a_shoe_stands_on_its_concrete_block_by_its_rod(
 
 
 def test_siblings_that_meet_nothing_else_meet_each_other(gridshell: Gridshell) -> None:
-    parts = {part.mark: part for part in all_parts(gridshell)}
+    parts = index_of(gridshell).parts
     joint = Joint("S1-K-001", "AG", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), ("S1-A1-01-L", "S1-A1-01-R", "S1-K-001"), ())
     assert joint_sides(joint, parts) == (["S1-A1-01-L", "S1-A1-01-R"], ["S1-K-001"])
     with pytest.raises(NetworkError, match="S1-K-001: a joint with 1 members"):

@@ -26,7 +26,7 @@ from aag_cad.design import Design
 from aag_cad.errors import FileError, SolidError
 from aag_cad.export.cad.step import Header, write_step
 from aag_cad.export.ifc.kinds import colour
-from aag_cad.parts.assemblies import beam_of_parts
+from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import placed, shell_mesh
 from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
@@ -155,7 +155,7 @@ def parents_in_the_model(gridshell: Gridshell) -> dict[str, str]:
     """Return the mark of the assembly that each part and assembly sits in; "" is the vault."""
     parents = {shell.mark: "" for shell in gridshell.shells}
     for shell in gridshell.shells:
-        home = beam_of_parts(shell)
+        home = index_of(shell).beam_of
         parents |= {beam.mark: shell.mark for beam in shell.beams}
         parents |= {part.mark: home.get(part.mark, shell.mark) for part in shell_parts(shell)}
     return parents | {part.mark: "" for part in ridge_parts(gridshell)}
@@ -198,7 +198,7 @@ def test_the_file_is_ap242_in_millimetres(text: Text) -> None:
 
 def test_beams_hold_their_planks_blocks_and_block_bolts_and_the_shell_the_rest(few: Gridshell) -> None:
     shell = few.shells[0]
-    home = beam_of_parts(shell)
+    home = index_of(shell).beam_of
     assert {mark for mark in home if home[mark] == shell.beams[0].mark} >= set(shell.beams[0].planks)
     for joint in shell.joints:
         beams = {plank.beam for plank in shell.planks if plank.mark in joint.members and plank.beam}

@@ -15,7 +15,7 @@ from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTo
 from aag_cad.export.cad.step_text import Header, kernel_settings, named, placement, step_bytes
 from aag_cad.export.ifc.kinds import colour
 from aag_cad.files import write_bytes
-from aag_cad.parts.assemblies import beam_of_parts
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Frame, Gridshell, Shell, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
 from aag_cad.solids.products import product_solids
@@ -82,7 +82,7 @@ def _products(tools: _Tools, gridshell: Gridshell, solids: Mapping[str, TopoDS_S
 def _shell(tools: _Tools, shell: Shell, products: Mapping[str, TDF_Label]) -> TDF_Label:
     whole = _assembly(tools, f"Shell {shell.mark}")
     beams = {beam.mark: _assembly(tools, f"Coupled beam {beam.mark}") for beam in shell.beams}
-    home = beam_of_parts(shell)
+    home = index_of(shell).beam_of
     for part in shell_parts(shell):
         parent = beams[home[part.mark]] if part.mark in home else whole
         _add(tools, parent, products[part.mark], part_frame(part), part.mark)

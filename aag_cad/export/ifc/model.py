@@ -17,7 +17,7 @@ from aag_cad.export.ifc.site import spatial_tree
 from aag_cad.export.ifc.standard_sets import write_product_sets, write_serial_numbers
 from aag_cad.export.ifc.types import Product, define_types, products
 from aag_cad.files import replacing
-from aag_cad.parts.assemblies import beam_of_parts
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import (
     Footing,
     Frame,
@@ -70,7 +70,7 @@ def _write_shell(
         children[beam.mark] = []
         children[shell.mark].append(assemblies[beam.mark])
     placements = {mark: assembly.ObjectPlacement for mark, assembly in assemblies.items()}
-    home, elements = beam_of_parts(shell), {}
+    home, elements = index_of(shell).beam_of, {}
     for part in shell_parts(shell):
         mark = home.get(part.mark, shell.mark)
         elements[part.mark] = _occurrence(model, part, product_of[part.mark], placements[mark], unmoved)

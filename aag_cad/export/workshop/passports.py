@@ -13,6 +13,7 @@ import segno
 import typst
 
 from aag_cad.files import csv_text, write_bytes, write_text
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import shell_of
 from aag_cad.parts.model import Gridshell, Hole, Plank, Timber
 from aag_cad.resources import template
@@ -113,7 +114,7 @@ def reuse_csv(held: Iterable[Passport]) -> str:
 
 def passports_pdf(held: Iterable[Passport], gridshell: Gridshell) -> bytes:
     """Return the passports as a booklet of A4 sheets; the same passports give the same bytes."""
-    planks = {plank.mark: plank for shell in gridshell.shells for plank in shell.planks}
+    planks = index_of(gridshell).planks
     ordered = sorted(held, key=lambda each: each.mark)
     scale = _scale(max((each.length for each in ordered), default=0.0))
     with tempfile.TemporaryDirectory() as name:

@@ -19,6 +19,7 @@ from aag_cad.mechanics.siblings import (
     over_drilled,
     sprung_shape,
 )
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, Timber
 
 PREFABRICATION_HEADER = (
@@ -60,7 +61,7 @@ def prefabrication_of(shell: Shell, pair: CoupledPair, timber: Timber) -> Prefab
 def _paired_planks(gridshell: Gridshell) -> Iterator[tuple[Shell, CoupledPair, Plank, Plank]]:
     """Yield every beam by mark: its shell, its couplings, its left and right plank."""
     for shell in sorted(gridshell.shells, key=lambda shell: shell.mark):
-        planks = {plank.mark: plank for plank in shell.planks}
+        planks = index_of(shell).planks
         for beam in sorted(shell.beams, key=lambda beam: beam.mark):
             left, right = (planks[mark] for mark in beam.planks)
             yield shell, coupled_pair(beam, left, right), left, right

@@ -14,6 +14,7 @@ from typing import TypeAlias
 import numpy as np
 
 from aag_cad.findings import Finding
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Hole, HoleUse, Plank, Screw, all_joints, all_parts
 from aag_cad.units import Floats
@@ -98,7 +99,7 @@ def slot_for_turn(turn: float, gap: float, thickness: float) -> float:
 
 def _diameters(gridshell: Gridshell) -> Diameters:
     """Return the largest diameter of the bolts and of the screws of each joint."""
-    fasteners = {part.mark: part for part in all_parts(gridshell) if isinstance(part, Bolt | Screw)}
+    fasteners = index_of(gridshell).bolts | index_of(gridshell).screws
     found: Diameters = {}
     for joint in all_joints(gridshell):
         for mark in joint.fasteners:
@@ -234,12 +235,11 @@ def _grouped(items: list[Finding], noun: str) -> Iterator[Finding]:
 
 def _screws_in(gridshell: Gridshell) -> dict[str, list[Screw]]:
     """Return the screws of the joints of each coupling block."""
-    screws = {screw.mark: screw for shell in gridshell.shells for screw in shell.screws}
-    blocks = {block.mark for shell in gridshell.shells for block in shell.blocks}
+    index = index_of(gridshell)
     found: dict[str, list[Screw]] = defaultdict(list)
     for joint in all_joints(gridshell):
-        for member in blocks.intersection(joint.members):
-            found[member] += [screws[mark] for mark in joint.fasteners if mark in screws]
+        for member in index.blocks.keys() & joint.members:
+            found[member] += [index.screws[mark] for mark in joint.fasteners if mark in index.screws]
     return found
 
 

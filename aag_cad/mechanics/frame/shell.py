@@ -24,6 +24,7 @@ from aag_cad.mechanics.frame.model import (
     RigidLink,
     rectangle_section,
 )
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Beam, Joint, Plank, Shell, Timber, shell_parts
 from aag_cad.parts.quantities import mass
@@ -166,7 +167,7 @@ def _masses(
 ) -> Floats:
     """Return the masses (n,) at the nodes, kg; what belongs to a joint off the beams goes to the nearest beam."""
     weights = {part.mark: mass(part, timber) for part in shell_parts(shell)}
-    joints = {joint.mark: joint for joint in shell.joints}
+    joints = index_of(shell).joints
     names = [name for line in beams for name in line.nodes]
     points = np.concatenate([line.points for line in beams])
     found = np.zeros(len(nodes))
@@ -189,7 +190,7 @@ def _masses(
             shares = _shares(np.array([item.station for item in lying]), plank.curve.length)
             for item, share in zip(lying, shares.tolist(), strict=True):
                 put(share * weights[plank.mark], joints[item.joint])
-    planks = {plank.mark for plank in shell.planks}
+    planks = index_of(shell).planks.keys()
     for joint in shell.joints:
         if joint.kind in (*_ON_BEAMS, "ridge"):
             parts = {*joint.members, *joint.fasteners} - planks
@@ -225,7 +226,7 @@ def shell_frame(
     lines = {mark: line for mark, line in found.items() if line is not None}
     if not any(beam.mark in lines for beam in shell.beams):
         raise FrameError(f"{shell.mark}: none of its beams has two joints; at least one is needed for a frame")
-    beams, planks = {beam.mark: beam for beam in shell.beams}, {plank.mark: plank for plank in shell.planks}
+    beams, planks = index_of(shell).beams, index_of(shell).planks
     material = FrameMaterial(timber.modulus, timber.shear_modulus)
     elements: list[FrameElement] = []
     members: list[str] = []
@@ -242,7 +243,7 @@ def shell_frame(
     for line in upright:
         for joint, place in line.joints.items():
             beam_nodes[joint] = (*beam_nodes.get(joint, ()), line.nodes[place])
-    home = {plank.mark: plank.beam or plank.mark for plank in shell.planks}
+    home = index_of(shell).unit_of
     links = tuple(_links(lines, shell.joints, home, tight))
     masses = _masses(shell, timber, upright, {node.mark: i for i, node in enumerate(nodes)}, beam_nodes)
     return ShellFrame(FrameModel(nodes, tuple(elements), links), tuple(members), masses, beam_nodes)
