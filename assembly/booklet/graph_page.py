@@ -15,7 +15,7 @@ from assembly.base.steps import Plan, Step
 from assembly.booklet.markup import card_section, contents, filled_page
 from assembly.booklet.shared_pictures import shared_pictures
 from assembly.booklet.words import booklet_words, finding_lines
-from assembly.drawing.svg import Style, circle, group, label_svg, path, placed_labels, places_along, svg
+from assembly.drawing.svg import Style, circle, group, label_svg, path, placed_labels, places_along, polylines, svg
 from assembly.graph.interlacing import Interlacing, interlacing
 from assembly.graph.laying_units import Unit, units_of
 from assembly.graph.sliding import End
@@ -77,10 +77,9 @@ def _step_svg(
     own = [mark for mark in dict.fromkeys((*step.assemblies, *step.marks)) if mark in units]
     dots = [lines[mark][0] for mark in step.marks if mark not in units and mark in lines and not own]
     passed = [point for mark in own if mark in slides for point in places_along(lines[mark], slides[mark].passed)]
-    every = "".join(_line(lines[mark]).removeprefix('<path d="').removesuffix('"/>') for mark in units)
     wanted = [(mark, places_along(lines[mark], _SHARES)) for mark in own[:_MOST_NAMES]]
     items = [
-        group([f'<path d="{every}"/>'], _ALL),
+        group([polylines(lines[mark] for mark in units)], _ALL),
         group((_line(lines[mark]) for mark in laid), _LAID),
         group((_line(lines[mark]) for mark in own), _NEW),
         group((circle(point, 9.0) for point in dots), _DOT),

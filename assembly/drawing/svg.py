@@ -10,6 +10,7 @@ import numpy as np
 from aag_cad.units import Floats
 
 FONT = "DejaVu Sans Mono"
+UNITS_PER_MM = 10.0
 CHARACTER = 0.602
 _CAPITAL = 0.73
 _SAME_AREA = 1e-6
@@ -58,12 +59,20 @@ def group(items: Iterable[str], style: Style) -> str:
     return f"<g{_paint(style)}>{body}</g>" if body else ""
 
 
-def path(points: Floats, closed: bool = True) -> str:
-    """Return a polygon or polyline through points (n, 2), to be painted by its group."""
+def _steps(points: Floats) -> str:
     # As ``number`` does it, but all in one go: the booklets have half a million of them.
     values = np.where(np.abs(points) < _NOTHING, 0.0, points).ravel().tolist()
-    steps = ("%.1f " * len(values) % tuple(values)).replace(".0 ", " ").rstrip()
-    return f'<path d="M{steps}{"Z" if closed else ""}"/>'
+    return "M" + ("%.1f " * len(values) % tuple(values)).replace(".0 ", " ").rstrip()
+
+
+def path(points: Floats, closed: bool = True) -> str:
+    """Return a polygon or polyline through points (n, 2), to be painted by its group."""
+    return f'<path d="{_steps(points)}{"Z" if closed else ""}"/>'
+
+
+def polylines(lines: Iterable[Floats]) -> str:
+    """Return open lines, each through points (n, 2), as one shape, to be painted by its group."""
+    return f'<path d="{"".join(map(_steps, lines))}"/>'
 
 
 def polygon(points: Floats, style: Style) -> str:
@@ -81,9 +90,10 @@ def circle(centre: Sequence[float] | Floats, radius: float) -> str:
     return f'<circle cx="{number(float(centre[0]))}" cy="{number(float(centre[1]))}" r="{number(radius)}"/>'
 
 
-def rectangle(x: float, y: float, width: float, height: float) -> str:
-    """Return a rectangle from its upper left corner, to be painted by its group."""
-    return f'<rect x="{number(x)}" y="{number(y)}" width="{number(width)}" height="{number(height)}"/>'
+def rectangle(x: float, y: float, width: float, height: float, radius: float = 0.0) -> str:
+    """Return a rectangle from its upper left corner, its corners rounded by a radius, to be painted by its group."""
+    rounded = f' rx="{number(radius)}"' if radius else ""
+    return f'<rect x="{number(x)}" y="{number(y)}" width="{number(width)}" height="{number(height)}"{rounded}/>'
 
 
 def text(content: str, x: float, y: float, size: float, anchor: str = "middle", bold: bool = False) -> str:
@@ -97,7 +107,8 @@ def text(content: str, x: float, y: float, size: float, anchor: str = "middle", 
 
 def svg(width: float, height: float, items: Iterable[str]) -> str:
     """Return an SVG file of the given size in sheet units (a tenth of a millimetre each)."""
-    head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{width / 10:g}mm" height="{height / 10:g}mm" '
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{width / UNITS_PER_MM:g}mm" '
+    head += f'height="{height / UNITS_PER_MM:g}mm" '
     view = f'viewBox="0 0 {number(width)} {number(height)}" font-family="{FONT}">'
     return head + view + "".join(items) + "</svg>\n"
 

@@ -4,20 +4,18 @@ import math
 import re
 from dataclasses import replace
 from io import BytesIO
-from pathlib import Path
 
 import numpy as np
 import pytest
 from pypdf import PdfReader
 
 from aag_cad.design import Design
-from aag_cad.errors import FileError
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Part, all_parts
 from assembly.base.steps import Plan, Step
 from assembly.booklet.cards import part_rows, step_card, step_table, totals
 from assembly.booklet.contents import common_of, disassembly_booklet, sequence_booklet
-from assembly.booklet.pdf import booklet_pdf, sequence_pdf, write_sequence
+from assembly.booklet.pdf import booklet_pdf
 from assembly.plan.assembly_plan import piece_weights, plan_of
 from assembly.plan.durations import step_minutes
 from assembly.plan.planned import Planned
@@ -41,11 +39,13 @@ def text_of(pdf: bytes) -> list[str]:
     return [" ".join(page.extract_text().split()) for page in PdfReader(BytesIO(pdf)).pages]
 
 
+def sequence_pdf(planned: Planned, gridshell: Gridshell) -> bytes:
+    return booklet_pdf(sequence_booklet(planned, common_of(gridshell, planned.plan.language)))
+
+
 @pytest.fixture(scope="module")
-def pages(planned: Planned, gridshell: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> list[str]:
-    path = tmp_path_factory.mktemp("booklet") / "sequence.pdf"
-    write_sequence(planned, gridshell, path)
-    return text_of(path.read_bytes())
+def pages(planned: Planned, gridshell: Gridshell) -> list[str]:
+    return text_of(sequence_pdf(planned, gridshell))
 
 
 @pytest.fixture(scope="module")
@@ -280,15 +280,3 @@ def test_the_totals_count_each_part_once(gridshell: Gridshell) -> None:
     assert sum(int(row[1]) for row in kinds) == int(whole[1])
     assert sum(int(row[2]) for row in kinds) == int(whole[2])
     assert int(whole[2]) == len(all_parts(gridshell))
-
-
-def test_a_folder_in_the_way_is_an_error_and_nothing_is_left_behind(
-    alone: Planned, one_shell: Gridshell, tmp_path: Path
-) -> None:
-    target = tmp_path / "sequence.pdf"
-    target.mkdir()
-    (target / "kept.txt").write_text("kept", encoding="utf-8")
-    with pytest.raises(FileError, match=r"sequence\.pdf"):
-        write_sequence(alone, one_shell, target)
-    assert [path.name for path in tmp_path.iterdir()] == ["sequence.pdf"]
-    assert (target / "kept.txt").read_text(encoding="utf-8") == "kept"

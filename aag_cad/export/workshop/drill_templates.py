@@ -4,18 +4,12 @@ A PDF page ends at 14 400 points (5 080 mm; ISO 32000-1, annex C), so a longer p
 register marks.
 """
 
-import json
 import math
 import os
-import shutil
-import tempfile
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Literal, TypeAlias
-
-import typst
 
 from aag_cad.errors import DesignError
 from aag_cad.export.workshop.blank_drawings import (
@@ -29,8 +23,8 @@ from aag_cad.export.workshop.blank_drawings import (
 )
 from aag_cad.files import write_bytes
 from aag_cad.parts.model import Blank, Gridshell, Hole, Timber
-from aag_cad.resources import template
 from aag_cad.shop.groups import DrillGroup, all_planks, drawn_face, drill_groups, drilled_joints
+from aag_cad.typesetting import printout_pdf
 from aag_cad.units import MM_PER_M
 
 PaperName: TypeAlias = Literal["roll", "a3"]
@@ -203,14 +197,7 @@ def templates_data(gridshell: Gridshell, paper: PaperName) -> dict[str, Any]:
 
 def templates_pdf(gridshell: Gridshell, paper: PaperName = "roll") -> bytes:
     """Return the drill templates as PDF; the same gridshell gives the same bytes."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        data = templates_data(gridshell, paper)
-        (folder / "data.json").write_text(json.dumps(data, ensure_ascii=False), encoding="utf-8")
-        main = folder / "templates.typ"
-        shutil.copyfile(template("printouts", "templates.typ"), main)
-        pdf: bytes = typst.compile(str(main), root=str(folder), ignore_system_fonts=True, format="pdf")
-    return pdf
+    return printout_pdf("templates", templates_data(gridshell, paper))
 
 
 def write_templates(gridshell: Gridshell, path: str | os.PathLike[str], paper: PaperName = "roll") -> None:

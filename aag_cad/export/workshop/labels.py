@@ -3,29 +3,26 @@
 Two by seven on A4, each 99.1 x 38.1 mm, a common sheet. The picture of a blank shows the face that the label goes on.
 """
 
-import json
 import os
-import shutil
-import tempfile
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import typst
 
 from aag_cad.files import write_bytes
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.model import Beam, Gridshell, Plank, Shell
-from aag_cad.resources import template
 from aag_cad.shop.groups import DrillGroup, all_planks, drawn_face, drill_groups
+from aag_cad.typesetting import printout_pdf
 from aag_cad.units import Floats
 from assembly.booklet.qr import qr_svg
 from assembly.drawing.outline import Outline, shell_outline
+from assembly.drawing.svg import UNITS_PER_MM, Style, group, polylines, svg
 
 KEY_WIDTH, KEY_HEIGHT = 30.0, 21.0
 _KEY_MARGIN = 0.8
 _KEY_POINTS = 5
+_PALE = Style("none", "#a6a6a6", 1.2)
 _LAYERS = {-1: "inner", 0: "middle", 1: "outer"}
 
 
@@ -34,10 +31,10 @@ def qr_content(gridshell: Gridshell, mark: str) -> str:
     return f"{gridshell.name} {mark}"
 
 
-def _few(line: Floats) -> list[list[float]]:
-    """Return a line by a few of its points: enough for a picture of 30 mm."""
+def _few(line: Floats) -> Floats:
+    """Return a line by a few of its points, to 0.01 mm: enough for a picture of 30 mm."""
     chosen = np.linspace(0, len(line) - 1, min(len(line), _KEY_POINTS)).round().astype(int)
-    return [[round(float(x), 2), round(float(y), 2)] for x, y in line[chosen]]
+    return np.asarray(line[chosen].round(2))
 
 
 def _key_outline(shell: Shell) -> Outline:
@@ -49,15 +46,15 @@ def _key_outline(shell: Shell) -> Outline:
 
 
 def _key(shell: Shell, outline: Outline) -> dict[str, Any]:
-    """Return the small drawing of a shell, seen from outside, as SVG in mm: the lines of its beams and flat planks."""
+    """Return the small drawing of a shell, seen from outside, as SVG: the lines of its beams and flat planks; mm."""
     marks = [beam.mark for beam in shell.beams] + [plank.mark for plank in shell.planks if not plank.beam]
-    lines = "".join("M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in _few(outline.lines[mark])) for mark in sorted(marks))
-    svg = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{outline.width:.3f}mm" height="{outline.height:.3f}mm" '
-        f'viewBox="0 0 {outline.width:.3f} {outline.height:.3f}">'
-        f'<path d="{lines}" fill="none" stroke="#a6a6a6" stroke-width="0.12"/></svg>'
-    )
-    return {"width": outline.width, "height": outline.height, "svg": svg}
+    lines = polylines(UNITS_PER_MM * _few(outline.lines[mark]) for mark in sorted(marks))
+    width, height = outline.width, outline.height
+    return {
+        "width": width,
+        "height": height,
+        "svg": svg(UNITS_PER_MM * width, UNITS_PER_MM * height, [group([lines], _PALE)]),
+    }
 
 
 def _blank(plank: Plank) -> list[list[Any]]:
@@ -78,7 +75,7 @@ def _plank_label(gridshell: Gridshell, plank: Plank, group: DrillGroup, outline:
     return {
         "mark": plank.mark,
         "shell": shell_of(plank.mark),
-        "line": _few(outline.lines[plank.mark]),
+        "line": _few(outline.lines[plank.mark]).tolist(),
         "picture": _blank(plank),
         "facts": [
             f"{plank.blank.length:.1f} x {section.width:g} x {section.thickness:g} mm",
@@ -95,7 +92,7 @@ def _beam_label(gridshell: Gridshell, beam: Beam, lengths: dict[str, float], out
     return {
         "mark": beam.mark,
         "shell": shell_of(beam.mark),
-        "line": _few(outline.lines[beam.mark]),
+        "line": _few(outline.lines[beam.mark]).tolist(),
         "picture": _joints(beam),
         "facts": [
             f"coupled beam, {len(beam.joints)} joints",
@@ -134,13 +131,7 @@ def labels_data(gridshell: Gridshell) -> dict[str, Any]:
 
 def labels_pdf(gridshell: Gridshell) -> bytes:
     """Return the labels as PDF; the same gridshell gives the same bytes."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "data.json").write_text(json.dumps(labels_data(gridshell), ensure_ascii=False), encoding="utf-8")
-        main = folder / "labels.typ"
-        shutil.copyfile(template("printouts", "labels.typ"), main)
-        pdf: bytes = typst.compile(str(main), root=str(folder), ignore_system_fonts=True, format="pdf")
-    return pdf
+    return printout_pdf("labels", labels_data(gridshell))
 
 
 def write_labels(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:

@@ -3,20 +3,15 @@
 import json
 import math
 import os
-import shutil
-import tempfile
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
-import segno
-import typst
+import numpy as np
 
 from aag_cad.files import csv_text, write_bytes, write_text
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import shell_of
 from aag_cad.parts.model import Gridshell, Hole, Plank, Timber
-from aag_cad.resources import template
 from aag_cad.shop.passports import (
     REUSE_HEADER,
     SERVICE_LIFE_YEARS,
@@ -26,17 +21,23 @@ from aag_cad.shop.passports import (
     reuse_row,
     strain_along,
 )
+from aag_cad.typesetting import printout_pdf
 from aag_cad.units import MM_PER_M, Floats, deg_per_m
+from assembly.booklet.qr import qr_svg
+from assembly.drawing.svg import UNITS_PER_MM, Style, group, line, polygon, rectangle, svg
 
 PASSPORTS_VERSION = 1
 _DRAWING = 180.0
 _SCALES = (5, 10, 15, 20, 25, 30, 40, 50, 60, 75, 100, 150, 200, 250, 500)
 _ACROSS = 10.0
 _CHART = 9.0
+_GAP = 1.5
 _CHART_SPACING = 100.0
 # Less twist than this is none: what is left of it comes from rounding.
 _NO_TWIST_DEG_PER_M = 0.01
 _SHARES = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 5.0)
+_EDGE, _FRAME, _BORE = Style("none", "#000", 2.0), Style("none", "#000", 1.0), Style("#000")
+_BENDING, _TWIST = Style("#c9c4b8", "#6b665a", 2.0), Style("none", "#12507b", 3.5)
 
 
 def write_passports(
@@ -117,22 +118,17 @@ def passports_pdf(held: Iterable[Passport], gridshell: Gridshell) -> bytes:
     planks = index_of(gridshell).planks
     ordered = sorted(held, key=lambda each: each.mark)
     scale = _scale(max((each.length for each in ordered), default=0.0))
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        cards = [_card(each, planks[each.mark], gridshell.timber, scale, folder) for each in ordered]
-        data = {
-            "title": gridshell.title,
-            "radius": f"{gridshell.timber.min_bending_radius / MM_PER_M:g}\u00a0m",
-            "twist": f"{deg_per_m(gridshell.timber.max_twist):.3g}\u00a0°/m",
-            "scale": scale,
-            "across": _ACROSS,
-            "cards": cards,
-        }
-        (folder / "data.json").write_text(json.dumps(data, ensure_ascii=False), encoding="utf-8")
-        main = folder / "passports.typ"
-        shutil.copyfile(template("printouts", "passports.typ"), main)
-        pdf: bytes = typst.compile(str(main), root=str(folder), ignore_system_fonts=True, format="pdf")
-    return pdf
+    pictures: dict[str, str] = {}
+    cards = [_card(each, planks[each.mark], gridshell.timber, scale, pictures) for each in ordered]
+    data = {
+        "title": gridshell.title,
+        "radius": f"{gridshell.timber.min_bending_radius / MM_PER_M:g}\u00a0m",
+        "twist": f"{deg_per_m(gridshell.timber.max_twist):.3g}\u00a0°/m",
+        "scale": scale,
+        "across": _ACROSS,
+        "cards": cards,
+    }
+    return printout_pdf("passports", data, pictures)
 
 
 def _scale(longest: float) -> int:
@@ -140,14 +136,14 @@ def _scale(longest: float) -> int:
     return next((n for n in _SCALES if longest / n <= _DRAWING), math.ceil(longest / _DRAWING))
 
 
-def _card(held: Passport, plank: Plank, timber: Timber, scale: int, folder: Path) -> dict[str, Any]:
-    """Write the pictures of a passport to a folder and return what its card prints."""
+def _card(held: Passport, plank: Plank, timber: Timber, scale: int, pictures: dict[str, str]) -> dict[str, Any]:
+    """Return what the card of a passport prints; its pictures are added to ``pictures``."""
     strain = strain_along(plank, _CHART_SPACING)
     shares = (strain.bending * timber.min_bending_radius, strain.twist / timber.max_twist)
     most = max(float(abs(share).max()) for share in shares)
     limit = next((share for share in _SHARES if most <= share), math.ceil(most))
-    (folder / f"{held.mark}.svg").write_text(_drawing(held, strain, shares, limit, scale), encoding="utf-8")
-    segno.make_qr(held.mark, error="m").save(str(folder / f"{held.mark}-qr.svg"), border=0, xmldecl=False)
+    pictures[held.mark] = _drawing(held, strain, shares, limit, scale)
+    pictures[f"{held.mark}-qr"] = qr_svg(held.mark)
     return {
         "mark": held.mark,
         "facts": _facts(held),
@@ -198,36 +194,27 @@ def _holes(held: Passport) -> list[dict[str, Any]]:
 
 
 def _drawing(held: Passport, strain: Strain, shares: tuple[Floats, Floats], limit: float, scale: int) -> str:
-    """Return the blank with its holes and under it the chart of bending and twist, as SVG in mm of the sheet."""
-    width, high = held.section.width / _ACROSS, held.length / scale
-    top, zero = width + 1.5, width + 1.5 + _CHART / 2.0
-    bending, twist = (_CHART / 2.0 * share / limit for share in shares)
-    along = strain.stations / scale
-    area = f"M0 {zero:.3f}" + _path(along, zero - bending, "L") + f"L{high:.3f} {zero:.3f}Z"
-    bores = "".join(_bore(hole, width, scale) for hole in held.holes)
-    box = 'fill="none" stroke="#000" stroke-width="0.2"'
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{_DRAWING}mm" height="{top + _CHART:.3f}mm"'
-        f' viewBox="0 0 {_DRAWING} {top + _CHART:.3f}">'
-        f'<rect x="0.1" y="0.1" width="{high - 0.2:.3f}" height="{width - 0.2:.3f}" {box}/>{bores}'
-        f'<path d="{area}" fill="#c9c4b8" stroke="#6b665a" stroke-width="0.2"/>'
-        f'<path d="{_path(along, zero - twist, "M")}" fill="none" stroke="#12507b" stroke-width="0.35"/>'
-        f'<path d="M0 {zero:.3f}H{high:.3f}" stroke="#000" stroke-width="0.1"/>'
-        f'<rect x="0.05" y="{top:.3f}" width="{high - 0.1:.3f}" height="{_CHART - 0.1:.3f}" fill="none"'
-        ' stroke="#000" stroke-width="0.1"/></svg>\n'
+    """Return the blank with its holes and under it the chart of bending and twist, as SVG."""
+    length, width = UNITS_PER_MM * held.length / scale, UNITS_PER_MM * held.section.width / _ACROSS
+    chart, top = UNITS_PER_MM * _CHART, width + UNITS_PER_MM * _GAP
+    zero = top + chart / 2.0
+    along = UNITS_PER_MM * strain.stations / scale
+    bending, twist = (np.column_stack([along, zero - chart / 2.0 * share / limit]) for share in shares)
+    axis = np.array([(0.0, zero), (length, zero)])
+    items = (
+        group([rectangle(1.0, 1.0, length - 2.0, width - 2.0)], _EDGE),
+        group((_bore(hole, width, scale) for hole in held.holes), _BORE),
+        polygon(np.concatenate([axis[:1], bending, axis[1:]]), _BENDING),
+        line(twist, _TWIST),
+        line(axis, _FRAME),
+        group([rectangle(0.5, top, length - 1.0, chart - 1.0)], _FRAME),
     )
+    return svg(UNITS_PER_MM * _DRAWING, top + chart, items)
 
 
 def _bore(hole: Hole, width: float, scale: int) -> str:
     """Return a hole in the drawing of a blank; its round ends are to the scale across, to be seen at all."""
-    across = hole.diameter / _ACROSS
-    along = across + hole.slot / scale
-    return (
-        f'<rect x="{hole.station / scale - along / 2.0:.3f}" y="{(width - across) / 2.0 - hole.offset / _ACROSS:.3f}"'
-        f' width="{along:.3f}" height="{across:.3f}" rx="{across / 2.0:.3f}"/>'
-    )
-
-
-def _path(x: Floats, y: Floats, first: str) -> str:
-    points = [f"{a:.3f} {b:.3f}" for a, b in zip(x.tolist(), y.tolist(), strict=True)]
-    return first + "L".join(points)
+    x, y = UNITS_PER_MM * hole.station / scale, width / 2.0 - UNITS_PER_MM * hole.offset / _ACROSS
+    across = UNITS_PER_MM * hole.diameter / _ACROSS
+    along = across + UNITS_PER_MM * hole.slot / scale
+    return rectangle(x - along / 2.0, y - across / 2.0, along, across, across / 2.0)
