@@ -174,12 +174,11 @@ def build(
 @_user_errors
 def check(design: DesignName, as_json: AsJson = False) -> None:
     """Audit a design without writing files; exit code 1 if there is a finding of severity error."""
-    from dataclasses import asdict
-
     from aag_cad.design import load_design
 
     read = load_design(design)
     from aag_cad.audit import audit
+    from aag_cad.findings import finding_row
     from aag_cad.pipeline import gridshell_of
     from aag_cad.shop.purchases import purchases_of
 
@@ -189,7 +188,7 @@ def check(design: DesignName, as_json: AsJson = False) -> None:
         report("stock")
         purchases = purchases_of(gridshell, read)
         report("audit")
-        findings = [{**asdict(finding), "text": finding.text} for finding in audit(read, gridshell, purchases)]
+        findings = [finding_row(finding) for finding in audit(read, gridshell, purchases)]
     if as_json:
         print(json.dumps(findings, indent=1, ensure_ascii=False))
     else:
@@ -224,8 +223,7 @@ def plan(
     as_json: AsJson = False,
 ) -> None:
     """Plan the assembly, the locking, the journey and the taking down; exit code 1 on a finding of severity error."""
-    from dataclasses import asdict
-
+    from aag_cad.findings import finding_row
     from aag_cad.language import language_of
     from aag_cad.planning import STAGES, explained, planned_source, read_source, write_plan
     from assembly.plan.assembly_plan import plan_json
@@ -251,7 +249,7 @@ def plan(
         for order in result.locking[:1] if edges_first else ():
             price = f"{100.0 * order.rule_price:.0f} %"
             console.print(f"Edge planks before geodesics cost {price} of the stiffness on the way", highlight=False)
-        console.print(_findings_table([{**asdict(f), "text": f.text} for f in result.findings]))
+        console.print(_findings_table([finding_row(f, printed) for f in result.findings]))
         console.print(_files_table(files, folder, summary=False))
     errors = sum(finding.severity == "error" for finding in result.findings)
     if errors:

@@ -1,8 +1,10 @@
 """What a check finds: one record for the audit and for everything that feeds it."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from dataclasses import asdict, dataclass
+from typing import Any, Literal, TypeAlias
+
+from aag_cad.language import Language, Sentence, printed
 
 Severity: TypeAlias = Literal["error", "warning", "note"]
 
@@ -11,24 +13,36 @@ _ORDER: dict[Severity, int] = {"error": 0, "warning": 1, "note": 2}
 
 @dataclass(frozen=True)
 class Finding:
-    """One finding: a code, how bad it is, the mark, the figure found and allowed with its unit, and the remedy."""
+    """One finding: a code, how bad it is, the mark, the figure found and allowed with its unit, and the remedy.
+
+    What plans find is said in the language of the reader (``finding_row``); what the audit finds, in English.
+    """
 
     code: str
     severity: Severity
     mark: str
-    what: str
+    what: Sentence
     found: float
     allowed: float
     unit: str
-    remedy: str
+    remedy: Sentence
 
     @property
     def text(self) -> str:
-        """The finding in one line."""
-        unit = f" {self.unit}" if self.unit else ""
-        return f"{self.mark}: {self.what} {self.found:.4g}{unit}, allowed {self.allowed:.4g}{unit}; {self.remedy}"
+        """The finding in one line of English."""
+        text: str = finding_row(self)["text"]
+        return text
+
+
+def finding_row(finding: Finding, language: Language = "en") -> dict[str, Any]:
+    """Return a finding as plain data in a language: its fields, and ``text``, all of it in one line."""
+    what, remedy = printed(finding.what, language), printed(finding.remedy, language)
+    unit = f" {finding.unit}" if finding.unit else ""
+    figures = f"{finding.found:.4g}{unit}, allowed {finding.allowed:.4g}{unit}"
+    line = f"{finding.mark}: {what} {figures}; {remedy}"
+    return {**asdict(finding), "what": what, "remedy": remedy, "text": line}
 
 
 def worst_first(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Return findings sorted: errors first, then by code and mark."""
-    return tuple(sorted(findings, key=lambda f: (_ORDER[f.severity], f.code, f.mark, f.what)))
+    return tuple(sorted(findings, key=lambda f: (_ORDER[f.severity], f.code, f.mark, printed(f.what, "en"))))

@@ -219,6 +219,6 @@ def build(
             EVERY_OUTPUT[output](dossier, staging)
         ends = [start for _, start in begun[1:]] + [time.perf_counter()]
         seconds = {stage: end - start for (stage, start), end in zip(begun, ends, strict=True)}
-        summary = summary_of(model, findings, planned.plan, purchases, sizes_below(staging), seconds)
+        summary = summary_of(model, findings, planned.plan, purchases, sizes_below(staging), seconds, printed)
         write_summary(summary, staging / "summary.json")
     return Build(model, findings, planned, summary)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from aag_cad.errors import MarkError
 from aag_cad.findings import Finding
-from aag_cad.language import Language, say
+from aag_cad.language import text
 from assembly.base.errors import PlanError
 from assembly.base.mark_ranges import joined_ranges
 
@@ -54,9 +54,7 @@ def named_marks(marks: Sequence[str]) -> str:
         return ", ".join(marks)
 
 
-def lifting_findings(
-    weights: Mapping[str, tuple[float, float]], crew: Crew, language: Language = "en"
-) -> tuple[Finding, ...]:
+def lifting_findings(weights: Mapping[str, tuple[float, float]], crew: Crew) -> tuple[Finding, ...]:
     """Return what is heavy (AAG955): warnings for what the whole crew cannot lift, notes for what takes several people.
 
     ``weights`` are (kg, mm) by mark, as in ``assembly.plan.assembly_plan.piece_weights``. A warning names all pieces of
@@ -72,13 +70,13 @@ def lifting_findings(
             shared[needed].append((-mass, mark))
     found, allowed = [], crew.people * crew.lift_limit
     for mass, marks in sorted(heavy.items(), reverse=True):
-        words = say(language, "graph.plan.lifting.heavy" + "_one" * (crew.people == 1), people=crew.people)
+        words = text("graph.plan.lifting.heavy" + "_one" * (crew.people == 1), people=crew.people)
         needed = math.ceil(mass / crew.lift_limit)
-        remedy = say(language, "graph.plan.lifting.heavy_remedy", people=needed)
+        remedy = text("graph.plan.lifting.heavy_remedy", people=needed)
         found.append(Finding("AAG955", "warning", named_marks(marks), words, mass, allowed, "kg", remedy))
     for needed, listed in sorted(shared.items(), reverse=True):
         mass, mark = min(listed)
-        words = say(language, "graph.plan.lifting.shared", count=len(listed), people=needed)
-        remedy = say(language, "graph.plan.lifting.shared_remedy")
+        words = text("graph.plan.lifting.shared", count=len(listed), people=needed)
+        remedy = text("graph.plan.lifting.shared_remedy")
         found.append(Finding("AAG955", "note", mark, words, -mass, crew.lift_limit, "kg", remedy))
     return tuple(found)

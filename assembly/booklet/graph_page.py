@@ -134,7 +134,7 @@ def graph_html(plan: Plan, schedule: Schedule, graph: "nx.MultiGraph[str]") -> s
     words, units = booklet_words(plan.language), units_of(graph)
     lines, height = _on_sheet(graph, units)
     slid = any(step.phase == "slide" for step in plan.steps)
-    slides = _ways(interlacing(graph, plan.language, later=()), units) if slid else {}
+    slides = _ways(interlacing(graph, later=()), units) if slid else {}
     drawn, laid = {}, dict[str, None]()
     for step in plan.steps:
         shown = laid if len(units) <= _MOST_LAID else ()

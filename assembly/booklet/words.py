@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from aag_cad.findings import Finding
-from aag_cad.language import Language, figure, say, words_table
+from aag_cad.language import Figure, Language, figure, say, words_table
 
 
 def booklet_words(language: Language) -> dict[str, Any]:
@@ -33,4 +33,5 @@ def finding_line(finding: Finding, language: Language) -> str:
     unit = f" {finding.unit}" if finding.unit else ""
     found, allowed = (figure(f"{value:.4g}", language) + unit for value in (finding.found, finding.allowed))
     key = f"booklet.findings.{'line' if finding.allowed else 'none'}"
-    return say(language, key, mark=finding.mark, what=finding.what, found=found, allowed=allowed, remedy=finding.remedy)
+    told: dict[str, Figure] = {"mark": finding.mark, "what": finding.what, "remedy": finding.remedy}
+    return say(language, key, found=found, allowed=allowed, **told)

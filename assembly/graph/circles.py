@@ -6,7 +6,7 @@ from itertools import groupby, pairwise
 
 import networkx as nx
 
-from aag_cad.language import Language, say
+from aag_cad.language import Text, text
 from assembly.graph.laying_units import Crossing
 
 
@@ -38,17 +38,14 @@ def part_of(graph: "nx.DiGraph[str]", marks: Collection[str]) -> "nx.DiGraph[str
     return part
 
 
-def circle_links(knot: "nx.DiGraph[str]", language: Language = "en") -> str:
-    """Return a shortest circle through the first unit of a knot in words: who lies on whom, and at which joints."""
+def circle_links(knot: "nx.DiGraph[str]") -> tuple[Text, ...]:
+    """Return a shortest circle through the first unit of a knot: who lies on whom, and at which joints."""
     first = min(knot)
     ways = [nx.shortest_path(knot, follower, first) for follower in sorted(knot[first])]
-    links = [
-        say(
-            language, "graph.interlacing.link", upper=upper, lower=lower, joints=", ".join(knot[lower][upper]["joints"])
-        )
+    return tuple(
+        text("graph.interlacing.link", upper=upper, lower=lower, joints=", ".join(knot[lower][upper]["joints"]))
         for lower, upper in pairwise([first, *min(ways, key=len)])
-    ]
-    return "; ".join(links)
+    )
 
 
 def _in_circle(graph: "nx.DiGraph[str]", unit: str, removed: Collection[str]) -> bool:

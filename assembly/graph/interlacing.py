@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import networkx as nx
 
 from aag_cad.findings import Finding
-from aag_cad.language import Language, say
+from aag_cad.language import Text, text
 from assembly.base.errors import PlanError
 from assembly.graph.circles import circle_links, few_out, knots, part_of, relations
 from assembly.graph.faults import refuse_unlayable
@@ -88,17 +88,7 @@ def _slides(
         in_place.add(unit)
 
 
-def _reason(language: Language, hindrance: Hindrance, marks: list[str]) -> str:
-    return say(
-        language,
-        f"graph.interlacing.{hindrance.why}",
-        marks=", ".join(marks),
-        found=f"{hindrance.found:.0f}",
-        needed=f"{hindrance.needed:.0f}",
-    )
-
-
-def _reasons(knot: Iterable[str], found: Mapping[str, Sliding], language: Language) -> Iterator[str]:
+def _reasons(knot: Iterable[str], found: Mapping[str, Sliding]) -> Iterator[Text]:
     """Yield why the units of a knot cannot be slid in, those with the same figures in one sentence."""
     told: dict[Hindrance, list[str]] = defaultdict(list)
     for mark in knot:
@@ -106,24 +96,17 @@ def _reasons(knot: Iterable[str], found: Mapping[str, Sliding], language: Langua
             told[hindrance].append(mark)
     order: tuple[Why, ...] = ("upright", "kept", "unknown", "radius", "length")
     for hindrance in sorted(told, key=lambda h: (order.index(h.why), told[h])):
-        yield _reason(language, hindrance, told[hindrance])
+        figures = {"found": hindrance.found, "needed": hindrance.needed}
+        yield text(f"graph.interlacing.{hindrance.why}", marks=", ".join(told[hindrance]), **figures)
 
 
-def _finding(knot: "nx.DiGraph[str]", found: Mapping[str, Sliding], language: Language) -> Finding:
+def _finding(knot: "nx.DiGraph[str]", found: Mapping[str, Sliding]) -> Finding:
     """Return the error that names a knot, a shortest circle in it with its joints, and what hinders its units."""
-    what = say(
-        language,
-        "graph.interlacing.circle",
-        links=circle_links(knot, language),
-        reasons="; ".join(_reasons(knot, found, language)),
-    )
-    remedy = say(language, "graph.interlacing.remedy")
-    return Finding("AAG951", "error", ", ".join(knot), what, 0.0, 1.0, "", remedy)
+    what = text("graph.interlacing.circle", links=circle_links(knot), reasons=tuple(_reasons(knot, found)))
+    return Finding("AAG951", "error", ", ".join(knot), what, 0.0, 1.0, "", text("graph.interlacing.remedy"))
 
 
-def interlacing(
-    graph: "nx.MultiGraph[str]", language: Language = "en", later: Collection[str] | None = None
-) -> Interlacing:
+def interlacing(graph: "nx.MultiGraph[str]", later: Collection[str] | None = None) -> Interlacing:
     """Return the order of laying the units of a graph and the slides that it needs; see ``docs/interlacing.md``.
 
     The graph is that of a gridshell, of one of its shells or any other with the attributes of
@@ -148,7 +131,7 @@ def interlacing(
         crossings=crossings,
         precedence=_precedence(lying, chosen, left_out),
         slides=tuple(_slides(chosen, found, crossings, set(units) - left_out - set(chosen))),
-        findings=tuple(_finding(part_of(fixed, knot), found, language) for knot in stuck),
+        findings=tuple(_finding(part_of(fixed, knot), found) for knot in stuck),
         left_out=tuple(sorted(left_out)),
     )
 

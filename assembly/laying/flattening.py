@@ -15,7 +15,7 @@ from scipy.sparse import csc_array, eye_array
 from scipy.sparse.linalg import splu
 
 from aag_cad.findings import Finding, Severity
-from aag_cad.language import Language, say
+from aag_cad.language import text
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Plank, Shell, Timber
 from aag_cad.units import Floats
@@ -290,7 +290,7 @@ def flat_state(shell: Shell) -> FlatState:
     )
 
 
-def flat_findings(shell: Shell, state: FlatState, timber: Timber, language: Language = "en") -> tuple[Finding, ...]:
+def flat_findings(shell: Shell, state: FlatState, timber: Timber) -> tuple[Finding, ...]:
     """Return what a crew must know before it lays a shell flat: AAG971 to AAG974.
 
     AAG971 holes that miss each other, AAG972 a beam that would be bent beyond its strength if its two planks acted as
@@ -298,8 +298,7 @@ def flat_findings(shell: Shell, state: FlatState, timber: Timber, language: Lang
     """
 
     def finding(code: str, severity: Severity, mark: str, found: float, allowed: float, unit: str) -> Finding:
-        words = (say(language, f"drawings.findings.{code}.{key}") for key in ("what", "remedy"))
-        what, remedy = words
+        what, remedy = (text(f"drawings.findings.{code}.{key}") for key in ("what", "remedy"))
         return Finding(code, severity, mark, what, found, allowed, unit, remedy)
 
     stress = timber.modulus * beam_width(shell) / 2.0 / state.eased_radius

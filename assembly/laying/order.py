@@ -12,7 +12,6 @@ from typing import TypeAlias, TypeVar
 import networkx as nx
 import numpy as np
 
-from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell, Shell, Stud
 from aag_cad.units import MM_PER_M, Floats, Vector
 from assembly.base.crew import LONG_PIECE
@@ -258,12 +257,12 @@ def flat_order(shell: Shell, woven: Interlacing | None = None) -> FlatOrder:
     return _floor_order(lines, sorts, precedence, slides, courses(stud_rows(shell), studs), studs)
 
 
-def flat_orders(gridshell: Gridshell, language: Language = "en") -> dict[str, FlatOrder]:
+def flat_orders(gridshell: Gridshell) -> dict[str, FlatOrder]:
     """Return the order of laying each shell flat, by mark, with what is slid in.
 
     PlanError that names every circle of members of which none can be slid in.
     """
-    woven = interlacing(assembly_graph(gridshell), language)
+    woven = interlacing(assembly_graph(gridshell))
     return {shell.mark: flat_order(shell, woven) for shell in gridshell.shells}
 
 

@@ -145,7 +145,7 @@ def plan_of(
     """
     crew, weights = crew_of(people, lift_limit), piece_weights(gridshell, segmentation)
     locked = {order.shell: order for order in locking}
-    laid = orders if orders is not None else flat_orders(gridshell, language)
+    laid = orders if orders is not None else flat_orders(gridshell)
     chapters: list[tuple[str, Sequence[Shell], tuple[Work, ...]]] = []
     for shell in gridshell.shells:
         works = shell_works(shell, laid[shell.mark], locked.get(shell.mark), language)
@@ -161,9 +161,9 @@ def plan_of(
     craned = {*(shell.mark for shell in gridshell.shells), *segment_weights(gridshell, segmentation)}
     carried = {mark: weight for mark, weight in weights.items() if mark not in craned}
     findings = (
-        *lifting_findings(carried, crew, language),
+        *lifting_findings(carried, crew),
         *(segment_findings(segmentation) if segmentation else ()),
-        *(stiffness_findings(gridshell, segmentation, language=language) if segmentation else ()),
+        *(stiffness_findings(gridshell, segmentation) if segmentation else ()),
     )
     return Plan(gridshell.name, tuple(steps), language, findings)
 

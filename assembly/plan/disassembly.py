@@ -292,7 +292,7 @@ def disassembly_of(
     PlanError if the layers are woven in a circle, a part belongs to no joint, or the crew is empty.
     """
     crew, weights = crew_of(people, lift_limit), piece_weights(gridshell)
-    laid = orders if orders is not None else flat_orders(gridshell, language)
+    laid = orders if orders is not None else flat_orders(gridshell)
     kits = {shell.mark: shell_kit(shell) for shell in gridshell.shells}
     props = {shell.mark: prop_points(shell) for shell in gridshell.shells}
     chapters = [list(_site_tasks(gridshell, kits))]

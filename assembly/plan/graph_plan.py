@@ -10,7 +10,7 @@ import networkx as nx
 from aag_cad.design_making import Minutes
 from aag_cad.errors import MarkError
 from aag_cad.findings import Finding
-from aag_cad.language import Figure, Language, say, says
+from aag_cad.language import Figure, Language, say, says, text
 from aag_cad.units import MM_PER_M
 from assembly.base.crew import Crew, crew_of, hands_for, lifting_findings, named_marks
 from assembly.base.mark_ranges import short_mark
@@ -217,10 +217,10 @@ def _numbered(task: _Task, steps: Sequence[Step]) -> tuple[Step, ...]:
     )
 
 
-def _waiting(task: _Task, marks: Sequence[str]) -> tuple[Finding, ...]:
+def _waiting(marks: Sequence[str]) -> tuple[Finding, ...]:
     if not marks:
         return ()
-    what, remedy = task.say("waiting.what"), task.say("waiting.remedy")
+    what, remedy = text("graph.plan.waiting.what"), text("graph.plan.waiting.remedy")
     return (Finding("AAG956", "error", ", ".join(marks), what, float(len(marks)), 0.0, "", remedy),)
 
 
@@ -232,7 +232,7 @@ def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float, lang
     put in (AAG956), which is in no step, and what is heavy (AAG955). PlanError if the graph has faults, a part is tied
     to nothing, or the crew is empty.
     """
-    crew, woven, units = crew_of(people, lift_limit), interlacing(graph, language, later=()), units_of(graph)
+    crew, woven, units = crew_of(people, lift_limit), interlacing(graph, later=()), units_of(graph)
     order, kits = flat_order_of(graph, woven, later=()), _kits(graph, units)
     task = _Task(graph, units, kits, woven, order, _weights(graph, kits, units), crew, language)
     placed = {mark: unit for unit, kit in kits.items() for mark in kit}
@@ -240,7 +240,7 @@ def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float, lang
     step_of: dict[str, str] = {}
     steps = [*_laying(task, step_of), *_sliding(task, step_of), *_joining(task, found, step_of)]
     lifted = {mark: weight for mark, weight in task.weights.items() if mark not in woven.left_out}
-    findings = (*woven.findings, *_waiting(task, waiting), *lifting_findings(lifted, crew, language))
+    findings = (*woven.findings, *_waiting(waiting), *lifting_findings(lifted, crew))
     return Plan(str(graph.name), _numbered(task, steps), language, findings)
 
 

@@ -63,15 +63,15 @@ def planned_of(
     def scheduled(plan: Plan) -> Schedule:
         return schedule_of(plan, step_minutes(plan, gridshell, crew.minutes), crew.people, crew.hours_per_day)
 
-    locking, found = locking_orders(gridshell, edges_first=edges_first), segments(gridshell, limits, language)
-    orders, size = flat_orders(gridshell, language), (crew.people, crew.lift_limit)
+    locking, found = locking_orders(gridshell, edges_first=edges_first), segments(gridshell, limits)
+    orders, size = flat_orders(gridshell), (crew.people, crew.lift_limit)
     plan = plan_of(gridshell, *size, orders=orders, locking=locking, segmentation=found, language=language)
     flat = {shell.mark: flat_state(shell) for shell in gridshell.shells if shell.studs}
     lying = (
         finding
         for shell in gridshell.shells
         if shell.mark in flat
-        for finding in flat_findings(shell, flat[shell.mark], gridshell.timber, language)
+        for finding in flat_findings(shell, flat[shell.mark], gridshell.timber)
     )
     plan = replace(plan, findings=(*plan.findings, *lying))
     down = disassembly_of(gridshell, *size, orders=orders, segmentation=found, language=language)

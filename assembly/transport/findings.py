@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from aag_cad.findings import Finding, Severity
-from aag_cad.language import Figure, Language, say
+from aag_cad.language import Figure, Text, text
 from assembly.base.mark_ranges import short_mark
 from assembly.transport.cut_pieces import Divisible, Run, run_between, run_splices
 from assembly.transport.lifting import LEAST_MARGIN, Lifting
@@ -17,13 +17,13 @@ _UP_TO = 10.0
 _AXES = ("length", "width", "height", "mass")
 
 
-def _words(language: Language, key: str, **figures: Figure) -> str:
-    return say(language, f"segments.finding.{key}", **figures)
+def _words(key: str, **figures: Figure) -> Text:
+    return text(f"segments.finding.{key}", **figures)
 
 
-def _limits(limits: Limits, language: Language) -> str:
+def _limits(limits: Limits) -> Text:
     room = {"length": limits.length, "width": limits.width, "height": limits.height, "load": limits.load}
-    return _words(language, "limits" if math.isfinite(limits.load) else "limits_room", **room)
+    return _words("limits" if math.isfinite(limits.load) else "limits_room", **room)
 
 
 def _up(size: float) -> float:
@@ -42,7 +42,7 @@ def _worst(pose: Pose, mass: float, limits: Limits) -> tuple[str, float, float, 
 
 
 def _finding(
-    code: str, severity: Severity, mark: str, worst: tuple[str, float, float, str], what: str, remedy: str
+    code: str, severity: Severity, mark: str, worst: tuple[str, float, float, str], what: Text, remedy: Text
 ) -> Finding:
     _, found, allowed, unit = worst
     return Finding(code, severity, mark, what, found, allowed, unit, remedy)
@@ -53,44 +53,41 @@ def whole_run(item: Divisible) -> Run:
     return run_between(item, *segment_ends(item, ())[0])
 
 
-def wish(item: Divisible, limits: Limits, language: Language = "en") -> str:
+def wish(item: Divisible, limits: Limits) -> Text:
     """Return what would let a shell travel whole: a width or a height, a larger transport, a load."""
     run = whole_run(item)
-    load = _words(language, "load", mass=math.ceil(run.mass))
+    load = _words("load", mass=math.ceil(run.mass))
     if pose_in(run, limits, 1.0).filling <= 1.0 + _ROUNDING:
         return load
     sizes = [
-        _words(language, "axis", side=key, size=f"{_up(size):.0f}")
+        _words("axis", side=key, size=f"{_up(size):.0f}")
         for key, size in zip(("width", "height"), least_widths(run, limits), strict=True)
         if size is not None
     ]
     if not sizes:
-        sizes = [_words(language, "room", sizes=_sizes([_up(size) for size in pose_in(run, limits).size]))]
-    found = _words(language, "or").join(sizes)
-    return found + _words(language, "and") + load if run.mass > limits.load else found
+        sizes = [_words("room", sizes=_sizes([_up(size) for size in pose_in(run, limits).size]))]
+    room = _words("either", sizes=tuple(sizes))
+    return _words("both", room=room, load=load) if run.mass > limits.load else room
 
 
-def cut_finding(
-    item: Divisible, stops: tuple[int, ...], limits: Limits, wished: str, language: Language = "en"
-) -> Finding:
+def cut_finding(item: Divisible, stops: tuple[int, ...], limits: Limits, wished: Text) -> Finding:
     """Return which cuts a shell needs, and what would spare them (AAG961)."""
     beams = sum(splice.kind == "block" for stop in stops for splice in run_splices(item, stop))
     lines = ", ".join(short_mark(item.tracks.lines[item.tracks.line(stop) - 1]) for stop in stops)
     run = whole_run(item)
     worst = _worst(pose_in(run, limits), run.mass, limits)
     remedy = _words(
-        language,
         "cut",
-        limits=_limits(limits, language),
+        limits=_limits(limits),
         count=len(segment_ends(item, stops)),
         lines=lines,
         beams=beams,
         wish=wished,
     )
-    return _finding("AAG961", "warning", item.shell.mark, worst, _words(language, worst[0]), remedy)
+    return _finding("AAG961", "warning", item.shell.mark, worst, _words(worst[0]), remedy)
 
 
-def hopeless_finding(item: Divisible, limits: Limits, wished: str, language: Language = "en") -> Finding:
+def hopeless_finding(item: Divisible, limits: Limits, wished: Text) -> Finding:
     """Return why no cuts along geodesics will do (AAG962): the geodesic that alone, cut as well as can be, is worst."""
     best_of: dict[str, tuple[float, Run, Pose]] = {}
     for ends in smallest_runs(item):
@@ -100,23 +97,23 @@ def hopeless_finding(item: Divisible, limits: Limits, wished: str, language: Lan
         if filling < best_of.get(run.geodesics[0], (math.inf,))[0]:
             best_of[run.geodesics[0]] = filling, run, pose
     _, run, pose = max(best_of.values(), key=lambda best: best[0])
-    figures = {"geodesic": short_mark(run.geodesics[0]), "box": _words(language, "box", sizes=_sizes(pose.size))}
-    told = _words(language, "worst", mass=f"{run.mass:.0f}", **figures)
-    remedy = _words(language, "hopeless", limits=_limits(limits, language), worst=told, wish=wished)
+    box = _words("box", sizes=_sizes(pose.size))
+    told = _words("worst", mass=f"{run.mass:.0f}", geodesic=short_mark(run.geodesics[0]), box=box)
+    remedy = _words("hopeless", limits=_limits(limits), worst=told, wish=wished)
     worst = _worst(pose, run.mass, limits)
-    return _finding("AAG962", "error", item.shell.mark, worst, _words(language, worst[0]), remedy)
+    return _finding("AAG962", "error", item.shell.mark, worst, _words(worst[0]), remedy)
 
 
-def lifting_finding(segment: str, lifting: Lifting, language: Language = "en") -> Finding | None:
+def lifting_finding(segment: str, lifting: Lifting) -> Finding | None:
     """Return that a segment cannot be slung by three joints (AAG963, a warning: a spreader helps), None if it can."""
     if lifting.studs:
         return None
     found = max(lifting.margin, 0.0)
-    what, remedy = _words(language, "sling"), _words(language, "sling_remedy")
+    what, remedy = _words("sling"), _words("sling_remedy")
     return Finding("AAG963", "warning", segment, what, found, LEAST_MARGIN, "mm", remedy)
 
 
-def splice_finding(splice: Splice, language: Language = "en") -> Finding | None:
+def splice_finding(splice: Splice) -> Finding | None:
     """Return that a splice does not keep its distances (AAG964), None if it does."""
     if splice.fits:
         return None
@@ -124,6 +121,6 @@ def splice_finding(splice: Splice, language: Language = "en") -> Finding | None:
     found, allowed = (splice.clear, splice.required) if near else (splice.room, splice.reach)
     kind = "edge" if splice.kind == "plate" else "hole" if near else "part"
     joint = short_mark(splice.joint) if splice.joint else ""
-    what = _words(language, f"next_{kind}", joint=joint, line=short_mark(splice.line))
-    remedy = _words(language, "edge_remedy" if splice.kind == "plate" else "beam_remedy")
+    what = _words(f"next_{kind}", joint=joint, line=short_mark(splice.line))
+    remedy = _words("edge_remedy" if splice.kind == "plate" else "beam_remedy")
     return Finding("AAG964", "error", splice.member, what, found, allowed, "mm", remedy)

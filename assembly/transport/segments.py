@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from aag_cad.findings import Finding
-from aag_cad.language import Language
+from aag_cad.language import Text
 from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Frame, Gridshell, Shell
@@ -186,7 +186,7 @@ def _on_site(item: Divisible, segments: list[Segment], splices: list[Splice]) ->
     return [mark for mark in item.small if mark not in gone]
 
 
-def segments(gridshell: Gridshell, limits: Limits, language: Language = "en") -> Segmentation:
+def segments(gridshell: Gridshell, limits: Limits) -> Segmentation:
     """Return the fewest segments that fit the transport, with fewest cut beams, then most even masses.
 
     Shells are divided along the ridges already; each is cut further along its geodesics if it must be. The choice of
@@ -199,13 +199,13 @@ def segments(gridshell: Gridshell, limits: Limits, language: Language = "en") ->
     site: list[str] = []
     changes: list[Finding] = []
     problems: list[Finding] = []
-    known: dict[tuple[str, ...], tuple[tuple[int, ...] | None, str]] = {}
+    known: dict[tuple[str, ...], tuple[tuple[int, ...] | None, Text | None]] = {}
     poses: dict[tuple[str, ...], list[Pose]] = {}
     for shell in gridshell.shells:
         item, key = divisible(shell, gridshell.timber), _shape_key(shell)
         if key not in known:
             stops = best_stops(item, limits)
-            known[key] = stops, "" if stops == () else wish(item, limits, language)
+            known[key] = stops, None if stops == () else wish(item, limits)
         stops, wished = known[key]
         ends = segment_ends(item, stops or ())
         runs = [run_between(item, *pair) for pair in ends]
@@ -217,13 +217,13 @@ def segments(gridshell: Gridshell, limits: Limits, language: Language = "en") ->
         made += own
         splices += cut
         site += _on_site(item, own, cut)
-        if stops is None:
-            problems.append(hopeless_finding(item, limits, wished, language))
-        elif stops:
-            changes.append(cut_finding(item, stops, limits, wished, language))
+        if wished and stops is None:
+            problems.append(hopeless_finding(item, limits, wished))
+        elif wished and stops:
+            changes.append(cut_finding(item, stops, limits, wished))
         found = (
-            *(splice_finding(s, language) for s in cut),
-            *(lifting_finding(s.name, s.lifting, language) for s in own),
+            *(splice_finding(s) for s in cut),
+            *(lifting_finding(s.name, s.lifting) for s in own),
         )
         problems += [finding for finding in found if finding is not None]
     return Segmentation(limits, tuple(made), tuple(splices), tuple(site), tuple(changes), tuple(problems))

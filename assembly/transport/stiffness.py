@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from aag_cad.findings import Finding
-from aag_cad.language import Figure, Language, say
+from aag_cad.language import Figure, Text, text
 from aag_cad.mechanics.frame.factor import SingularError, factor, lowest_pairs
 from aag_cad.mechanics.frame.model import Dof, FrameModel, Spring, Support
 from aag_cad.mechanics.frame.shell import shell_frame
@@ -326,22 +326,20 @@ def segments_stiffness(gridshell: Gridshell, segmentation: Segmentation) -> tupl
     return tuple(found)
 
 
-def stiffness_finding(
-    stiffness: SegmentStiffness, limit: float = SAG_LIMIT, language: Language = "en"
-) -> Finding | None:
+def stiffness_finding(stiffness: SegmentStiffness, limit: float = SAG_LIMIT) -> Finding | None:
     """Return that a segment sags more than a limit (mm) with its braces (AAG965, a warning), None if it does not."""
     if stiffness.displacement <= limit:
         return None
 
-    def words(key: str, **figures: Figure) -> str:
-        return say(language, f"segments.stiffness.{key}", **figures)
+    def words(key: str, **figures: Figure) -> Text:
+        return text(f"segments.stiffness.{key}", **figures)
 
     hold = max(stiffness.holds, key=lambda hold: hold.braced.displacement)
     free, held = math.isinf(stiffness.displacement), words(hold.way)
-    remedy = words("hold" if free else f"hold_{hold.way}", at=hold.braced.at)
+    told = [words("hold" if free else f"hold_{hold.way}", at=hold.braced.at)]
     if hold.buckled:
-        remedy += words("buckled", braces=", ".join(str(i + 1) for i in hold.buckled))
-    remedy += words("wider")
+        told.append(words("buckled", braces=", ".join(str(i + 1) for i in hold.buckled)))
+    remedy = words("remedy", told=(*told, words("wider")))
     if free:
         return Finding("AAG965", "warning", stiffness.segment, words("free", held=held), 1.0, 0.0, "", remedy)
     what = words("sag", held=held)
@@ -349,9 +347,9 @@ def stiffness_finding(
 
 
 def stiffness_findings(
-    gridshell: Gridshell, segmentation: Segmentation, limit: float = SAG_LIMIT, language: Language = "en"
+    gridshell: Gridshell, segmentation: Segmentation, limit: float = SAG_LIMIT
 ) -> tuple[Finding, ...]:
     """Return which segments of cut shells sag more than a limit (mm) with their braces: AAG965."""
     every = segments_stiffness(gridshell, segmentation)
-    found = (stiffness_finding(stiffness, limit, language) for stiffness in every)
+    found = (stiffness_finding(stiffness, limit) for stiffness in every)
     return tuple(finding for finding in found if finding is not None)

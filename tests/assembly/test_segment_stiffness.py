@@ -278,7 +278,7 @@ def test_a_segment_that_sags_is_a_finding_with_its_remedy(
     worst = hold_of(bare, "hung").bare
     assert (finding.code, finding.severity, finding.mark, finding.unit) == ("AAG965", "warning", "S1.3", "mm")
     assert finding.found == worst.displacement > finding.allowed == SAG_LIMIT
-    assert f"most at {worst.at}: sling it there as well, under a spreader" in finding.remedy
+    assert f"most at {worst.at}: sling it there as well, under a spreader" in finding.text
 
 
 def test_a_segment_on_one_foot_is_free_to_move_and_said_to_be(
@@ -294,7 +294,7 @@ def test_a_segment_on_one_foot_is_free_to_move_and_said_to_be(
     assert finding is not None
     assert math.isinf(stiffness.displacement)
     assert (finding.found, finding.allowed) == (1.0, 0.0)
-    assert "ways to move" in finding.what
+    assert "ways to move" in finding.text
 
 
 def test_equal_segments_of_other_shells_have_equal_figures_and_their_own_marks(

@@ -9,7 +9,8 @@ from typing import Any
 
 from aag_cad.audit import forming_stresses
 from aag_cad.files import write_text
-from aag_cad.findings import Finding
+from aag_cad.findings import Finding, finding_row
+from aag_cad.language import Language
 from aag_cad.mechanics.checks.supports import footing_checks
 from aag_cad.model import Model
 from aag_cad.network.extent import ShellExtent
@@ -98,8 +99,12 @@ def summary_of(
     purchases: Purchases,
     sizes: Mapping[str, int],
     seconds: Mapping[str, float],
+    language: Language = "en",
 ) -> dict[str, Any]:
-    """Return the summary as plain data; only ``seconds`` differs from one build of a design to the next."""
+    """Return the summary as plain data; only ``seconds`` differs from one build of a design to the next.
+
+    Findings of plans are said in ``language``.
+    """
     gridshell, extent = model.gridshell, model.extent
     return {
         "design": gridshell.name,
@@ -112,7 +117,7 @@ def summary_of(
         "supports": [asdict(check) for check in footing_checks(model.design, gridshell)][:1],
         "stock": stock_summary(purchases),
         "plan_steps": len(plan.steps),
-        "findings": [{**asdict(finding), "text": finding.text} for finding in findings],
+        "findings": [finding_row(finding, language) for finding in findings],
         "files": dict(sizes),
         "seconds": {stage: round(value, 3) for stage, value in seconds.items()},
     }

@@ -14,6 +14,7 @@ from typing import TypeAlias
 import numpy as np
 
 from aag_cad.findings import Finding
+from aag_cad.language import printed
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Hole, HoleUse, Plank, Screw, all_joints, all_parts
@@ -230,7 +231,7 @@ def _grouped(items: list[Finding], noun: str) -> Iterator[Finding]:
     if items:
         worst = max(items, key=lambda item: round(abs(item.found - item.allowed), 1))
         count = f"one of {len(items)} {noun} alike: " if len(items) > 1 else ""
-        yield replace(worst, what=count + worst.what)
+        yield replace(worst, what=count + printed(worst.what, "en"))
 
 
 def _screws_in(gridshell: Gridshell) -> dict[str, list[Screw]]:
@@ -299,7 +300,9 @@ def block_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Fin
             rules += _block_screw_rules(block, screw, bolt)
         for rule in rules:
             if rule is not None:
-                groups[rule.what].append(replace(rule, severity="note" if rule.severity == "note" else "warning"))
+                groups[printed(rule.what, "en")].append(
+                    replace(rule, severity="note" if rule.severity == "note" else "warning")
+                )
     for what in sorted(groups):
         yield from _grouped(groups[what], "blocks")
 
@@ -351,7 +354,7 @@ def plank_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Fin
         for plank in shell.planks:
             for rule in (plank_end_shortfalls, plank_edge_shortfalls, plank_spacing_shortfalls):
                 for item in rule(plank, diameters):
-                    groups[item.code, item.what, round(item.found, 1)].append(item)
+                    groups[item.code, printed(item.what, "en"), round(item.found, 1)].append(item)
     for alike in groups.values():
         yield from _grouped(alike, "planks")
 
