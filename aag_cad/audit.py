@@ -15,7 +15,7 @@ from aag_cad.mechanics.checks.supports import footing_checks
 from aag_cad.parts.bolting import axis_distance, bolt_holes, bolts_by_joint
 from aag_cad.parts.clash import clashes
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import parse_mark, ridge_name
 from aag_cad.parts.model import Gridshell, Plank, Shell, all_joints
 from aag_cad.shop.purchases import Purchases
 from aag_cad.units import Floats, deg_per_m
@@ -189,7 +189,7 @@ def ridge_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
         return
     joined = {parse_mark(blade.mark).family for blade in gridshell.blades}
     for i in range(count):
-        family = f"R{i + 1}{(i + 1) % count + 1}"
+        family = ridge_name(i + 1, (i + 1) % count + 1)
         if family not in joined:
             remedy = "make the ridge planks of the shells mirror images, or join them by hand"
             yield Finding("AAG504", "warning", family, "blades", 0, 1, "", remedy)

@@ -50,7 +50,7 @@ def _geodesic_extents(
         extents[curve] = geodesic_extent(design, curves, stops)
         if extents[curve][1] - extents[curve][0] < 2 * design.timber.width:
             raise NetworkError(
-                f"geodesic G-{curve.number:02d}: no length is left between bottom and ridge plank; enlarge "
+                f"geodesic {curve.number}: no length is left between bottom and ridge plank; enlarge "
                 "shells.axis_distance, narrow shells.sector_deg or reduce boundary.end_gap "
                 f"({design.boundary.end_gap:g} mm)"
             )
@@ -94,7 +94,7 @@ def kept_crossings(design: Design, curves: dict[CurveId, FramedCurve], crossings
             if c.kind == "AG" and near[0].kind == "AA":
                 raise NetworkError(
                     f"joints.block_length: a block of {design.joints.block_length:g} mm does not fit between the "
-                    f"studs of beam {beam.family}-{beam.number:02d}; shorten it or use fewer geodesics"
+                    f"studs of {beam.family} beam {beam.number}; shorten it or use fewer geodesics"
                 )
             kept.discard(c)
     return sorted(kept, key=lambda c: (c.kind, c.curves, c.stations))

@@ -15,7 +15,7 @@ from aag_cad.network.ridge import ridge_distance
 from aag_cad.parts.clearance import Obstacle, is_free, placed_points
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt
 from aag_cad.parts.forming import formed_points
-from aag_cad.parts.marks import Mark
+from aag_cad.parts.marks import Mark, parse_mark, part_mark, ridge_name, shell_of
 from aag_cad.parts.members import Drilling, curve_mark
 from aag_cad.parts.model import Blade, Bolt, FoldedPlate, Frame, Gridshell, Joint, PlateHole
 from aag_cad.units import Floats, vector
@@ -96,7 +96,9 @@ def _blade(design: Design, mark: str, place: _Place, side: float) -> tuple[Blade
             centre, direction = _mirrored(centre, across), direction - 2.0 * (direction @ across) * across
         head = centre + (timber / 2.0 + ridge.blade_thickness) * direction
         frame = axis_frame(head, -direction, fold)
-        bolt = hexagon_bolt(f"{mark}-B{i}", design.joints.bolt_diameter, timber + ridge.blade_thickness, frame)
+        bolt = hexagon_bolt(
+            part_mark(mark, f"B{i}"), design.joints.bolt_diameter, timber + ridge.blade_thickness, frame
+        )
         bolts.append((bolt, centre, direction))
     return blade, bolts
 
@@ -165,7 +167,7 @@ def blade_joints(design: Design, network: CurveNetwork, among: Sequence[Obstacle
 
 def _free_blade(design: Design, index: int, place: _Place, among: Sequence[Obstacle]) -> BladeJoint | None:
     """Return the blade at a place inside, else outside, or None where both are taken."""
-    mark = str(Mark(0, "R12", index))
+    mark = str(Mark(0, ridge_name(1, 2), index))
     first, second = curve_mark(1, LEFT_RIDGE), curve_mark(2, RIGHT_RIDGE)
     others = [o for o in among if o.part.mark not in (first, curve_mark(1, RIGHT_RIDGE))]
     for side in (-1.0, 1.0):
@@ -197,7 +199,7 @@ def own_sides(design: Design, found: BladeJoint) -> tuple[Joint, Joint]:
     back = turn(-2.0 * math.pi / count)[:3, :3]
     left, right = (vector(np.mean([d.origin for d in side], axis=0)) for side in (found.left, found.right))
     old = found.joint.mark
-    other = f"R{count}1{old[3:]}"
+    other = str(replace(parse_mark(old), family=ridge_name(count, 1)))
     ours = replace(found.joint, point=left, members=found.joint.members[:1])
     theirs = replace(
         found.joint,
@@ -218,7 +220,7 @@ def ridge_gaps(gridshell: Gridshell) -> tuple[float, float] | None:
         return None
     first = gridshell.joints[0].members[0]
     plank = next(plank for plank in gridshell.shells[0].planks if plank.mark == first)
-    stations = np.array([place.station for place in plank.joints if place.joint.startswith("R")])
+    stations = np.array([place.station for place in plank.joints if not shell_of(place.joint)])
     half = plank.blank.section.width / 2.0
     edges = [
         formed_points(plank, np.column_stack([stations, np.full_like(stations, y), np.zeros_like(stations)]))

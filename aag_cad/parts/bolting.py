@@ -7,6 +7,7 @@ from typing import TypeAlias
 import numpy as np
 
 from aag_cad.parts.forming import formed_points
+from aag_cad.parts.marks import joint_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import UNMOVED, Blade, Bolt, Frame, Gridshell, Plank, Shell, Shoe, Strap
 from aag_cad.parts.plates import hole_axes
@@ -29,7 +30,7 @@ def bolts_by_joint(gridshell: Gridshell) -> dict[str, dict[str, Axis]]:
         matrix = frame_matrix(placement)
         for bolt in bolts:
             point = matrix[:3, :3] @ np.array(bolt.frame.origin) + matrix[:3, 3]
-            joint = bolt.mark.rpartition("-")[0]
+            joint = joint_of(bolt.mark)
             found[joint][bolt.mark] = point, matrix[:3, :3] @ np.array(bolt.frame.z)
     return found
 

@@ -1,7 +1,6 @@
 """The gridshell of a design and its network: all parts and joints of all shells."""
 
 import math
-import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 from dataclasses import fields, is_dataclass, replace
@@ -18,7 +17,7 @@ from aag_cad.parts.clearance import Obstacle, near_parts, obstacles
 from aag_cad.parts.facade import covered, placed_facade
 from aag_cad.parts.feet import foot_joints
 from aag_cad.parts.joints import BuiltJoint, block_joint, node_joint
-from aag_cad.parts.marks import Mark
+from aag_cad.parts.marks import Mark, turned_mark
 from aag_cad.parts.members import (
     Drilling,
     curve_mark,
@@ -53,7 +52,6 @@ from aag_cad.parts.straps import strap_joint
 from aag_cad.units import Floats, vector
 
 _T = TypeVar("_T")
-_BLADE_MARK = re.compile(r"R[1-9][1-9]-")
 
 
 def _numbered(network: CurveNetwork, shell: int) -> list[tuple[Mark, Crossing]]:
@@ -214,20 +212,7 @@ def _renamed(value: _T, rename: Callable[[str], str]) -> _T:
 
 def _copy_of(value: _T, index: int, count: int) -> _T:
     """Return what belongs to the first shell, and to the ridges beside it, as that of the shell ``index`` places on."""
-
-    def turned(number: int) -> int:
-        return (number - 1 + index) % count + 1
-
-    def rename(text: str) -> str:
-        if text == "S1" or text.startswith("S1-"):
-            return f"S{turned(1)}{text[2:]}"
-        if text.startswith("S2-"):
-            return f"S{turned(2)}{text[2:]}"
-        if _BLADE_MARK.match(text):
-            return f"R{turned(int(text[1]))}{turned(int(text[2]))}{text[3:]}"
-        return text
-
-    return _renamed(value, rename)
+    return _renamed(value, lambda text: turned_mark(text, index, count))
 
 
 def _turned(frame: Frame, placement: Frame) -> Frame:

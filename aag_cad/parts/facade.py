@@ -20,7 +20,7 @@ from aag_cad.parts.clearance import Obstacle, is_free, obstacles, placed_points
 from aag_cad.parts.fasteners import axis_frame, wood_screw
 from aag_cad.parts.forming import axis_piercings
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import Mark, parse_mark
+from aag_cad.parts.marks import Mark, joint_of, parse_mark, part_mark
 from aag_cad.parts.members import Drilling, curve_mark, drilled, grouped, with_joints
 from aag_cad.parts.model import (
     Blank,
@@ -208,7 +208,7 @@ def _drilled_bar(bar: _Bar, screws: Sequence[Screw], diameter: float) -> _Bar:
     """Return a bar with the holes of its screws, each marked by its joint."""
     axes = (np.array([screw.frame.origin for screw in screws]), np.array([screw.frame.z for screw in screws]))
     holes = [
-        Hole(station, offset, diameter, "screw", screw.mark.removesuffix("-W1"))
+        Hole(station, offset, diameter, "screw", joint_of(screw.mark))
         for screw, (station, offset) in zip(screws, axis_piercings(bar, *axes).tolist(), strict=True)
     ]
     return replace(bar, blank=replace(bar.blank, holes=tuple(sorted(holes, key=lambda hole: hole.station))))
@@ -293,7 +293,7 @@ def _stand_off_screw(design: Design, mark: Mark, block: CouplingBlock, plank: st
     joints, up = design.joints, np.array(block.frame.y)
     middle = np.array(block.frame.origin) - design.layer_offset * up
     frame = axis_frame(middle - design.timber.thickness / 2.0 * up, up, np.array(block.frame.x))
-    screw = wood_screw(f"{mark}-W2", joints.screw_diameter, joints.screw_length, frame)
+    screw = wood_screw(part_mark(mark, "W2"), joints.screw_diameter, joints.screw_length, frame)
     return screw, Drilling(plank, vector(middle), vector(up), joints.screw_hole, "screw", str(mark))
 
 
@@ -302,7 +302,7 @@ def _fixed_at(design: Design, line: _Line, mark: Mark, station: float, at: Joint
     frames, facade = frames_at(line.item.curve, np.array([station])), design.facade
     up, face = frames.normal[0], frames.point[0] + beam_face(design) * frames.normal[0]
     axis = axis_frame(face + facade.build_up * up, -up, frames.tangent[0])
-    screw = wood_screw(f"{mark}-W1", facade.screw_diameter, facade.screw_length, axis)
+    screw = wood_screw(part_mark(mark, "W1"), facade.screw_diameter, facade.screw_length, axis)
     bars = (line.mullion.mark, line.clamp.mark, *line.strips)
     blocks: tuple[CouplingBlock, ...] = ()
     screws, drillings = [screw], list[Drilling]()

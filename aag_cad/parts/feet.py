@@ -12,7 +12,7 @@ from aag_cad.geometry.surface import unit
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork, NetworkCurve
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt, threaded_rod
 from aag_cad.parts.joints import BuiltJoint
-from aag_cad.parts.marks import Mark
+from aag_cad.parts.marks import Mark, part_mark
 from aag_cad.parts.members import LAYER, Drilling, curve_mark
 from aag_cad.parts.model import Bolt, FoldedPlate, Footing, Frame, Joint, PlateHole, Rod, Shoe
 from aag_cad.units import Floats, vector
@@ -94,9 +94,8 @@ def _rod(design: Design, site: _Site) -> Rod:
         + (z - supports.shoe_thickness / 2.0 - carries) * np.array([0.0, 0.0, 1.0])
     )
     frame = Frame(vector(at), site.frame.x, site.frame.y, site.frame.z)
-    return threaded_rod(
-        f"{Mark(site.mark.shell, 'C', site.mark.index)}-T1", supports.rod_diameter, length, (carries, presses), frame
-    )
+    block = Mark(site.mark.shell, "C", site.mark.index)
+    return threaded_rod(part_mark(block, "T1"), supports.rod_diameter, length, (carries, presses), frame)
 
 
 def _upright(design: Design, site: _Site) -> tuple[Floats, Floats]:
@@ -176,7 +175,7 @@ def _bolts(design: Design, site: _Site) -> tuple[list[Bolt], list[Drilling]]:
         normal = site.side * frames.normal[0]
         centre = frames.point[0] + offset * frames.binormal[0]
         frame = axis_frame(centre + (timber / 2.0 + plate) * normal, -normal, frames.tangent[0])
-        bolts.append(hexagon_bolt(f"{site.mark}-B{i}", design.joints.bolt_diameter, timber + plate, frame))
+        bolts.append(hexagon_bolt(part_mark(site.mark, f"B{i}"), design.joints.bolt_diameter, timber + plate, frame))
         drillings.append(
             Drilling(
                 curve_mark(site.mark.shell, curve),

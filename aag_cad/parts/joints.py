@@ -8,7 +8,7 @@ from aag_cad.design import Design
 from aag_cad.geometry.surface import unit
 from aag_cad.network.model import Crossing
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt, wood_screw
-from aag_cad.parts.marks import Mark
+from aag_cad.parts.marks import Mark, part_mark
 from aag_cad.parts.members import Drilling, beam_axes, curve_mark
 from aag_cad.parts.model import Beam, Bolt, CouplingBlock, CrossHole, Frame, Hole, Joint, Part, Stud
 from aag_cad.units import Floats, vector
@@ -74,7 +74,7 @@ def node_joint(design: Design, mark: Mark, crossing: Crossing, beams: list[Beam]
     for beam, station, direction in zip(beams, stations, across, strict=True):
         for offset in (-design.joints.bolt_offset, design.joints.bolt_offset):
             bolt, drilled = _beam_bolt(
-                design, f"{mark}-B{len(bolts) + 1}", str(mark), beam, station, offset, design.joints.stud_slot
+                design, part_mark(mark, f"B{len(bolts) + 1}"), str(mark), beam, station, offset, design.joints.stud_slot
             )
             bolts.append(bolt)
             drillings += drilled
@@ -98,19 +98,20 @@ def block_joint(design: Design, mark: Mark, crossing: Crossing, beam: Beam, stat
     place = min(max(station, length / 2.0), beam.curve.length - length / 2.0)
     point, tangent, across, normal = beam_axes(beam, place)
     frame = Frame(vector(point), vector(tangent), vector(normal), vector(-across))
-    bolt, drillings = _beam_bolt(design, f"{mark}-B1", str(mark), beam, place, away * design.joints.bolt_offset)
+    offset = away * design.joints.bolt_offset
+    bolt, drillings = _beam_bolt(design, part_mark(mark, "B1"), str(mark), beam, place, offset)
     block = CouplingBlock(
         str(mark),
         frame,
         length,
         design.timber.width,
         design.joints.gap,
-        (Hole(0.0, away * design.joints.bolt_offset, design.joints.bolt_hole, "bolt", str(mark)),),
+        (Hole(0.0, offset, design.joints.bolt_hole, "bolt", str(mark)),),
     )
     up = np.array(crossing.normal)
     head = np.array(crossing.point) - away * design.timber.thickness / 2.0 * up
     screw = wood_screw(
-        f"{mark}-W1",
+        part_mark(mark, "W1"),
         design.joints.screw_diameter,
         design.joints.screw_length,
         axis_frame(head, away * up, tangent),

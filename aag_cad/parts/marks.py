@@ -19,6 +19,10 @@ _PATTERN = re.compile(
 _BLADE = re.compile(r"R(?P<pair>[1-9][1-9])-(?P<index>\d{2,5})(?:-(?P<part>B[1-9]\d?))?")
 
 
+_OWNER = re.compile(r"(?:S(?P<shell>[1-9]\d?)(?=-|$)|R(?P<pair>[1-9][1-9])(?=-))")
+_FASTENER = re.compile(r"(?P<joint>.+)-(?P<letter>[BWT])[1-9]\d?")
+
+
 @dataclass(frozen=True, order=True)
 class Mark:
     """A parsed mark: shell number (0 for a blade), family ("" for a shell), index, and what it adds ("L", "B1"...).
@@ -30,6 +34,11 @@ class Mark:
     family: str = ""
     index: int = 0
     part: str = ""
+
+    @property
+    def letter(self) -> str:
+        """B for a bolt, W for a screw, T for a threaded rod, else the family."""
+        return self.part[0] if self.part[:1] in ("B", "W", "T") else self.family
 
     def __str__(self) -> str:
         """Return the mark as it is printed everywhere."""
@@ -64,3 +73,59 @@ def shell_of(text: str) -> str:
     """Return the mark of the shell that a part belongs to, or "" for a ridge blade."""
     mark = parse_mark(text)
     return f"S{mark.shell}" if mark.shell else ""
+
+
+def shells_of(text: str) -> tuple[str, ...]:
+    """Return the marks of the shells that a part belongs to: its own, or the two that a ridge blade joins."""
+    mark = parse_mark(text)
+    return (f"S{mark.shell}",) if mark.shell else tuple(f"S{number}" for number in mark.family[1:])
+
+
+def is_in_shell(text: str, shell: str) -> bool:
+    """Return whether a mark is that of a shell or of something in it."""
+    return text == shell or text.startswith(f"{shell}-")
+
+
+def in_other_shell(text: str, shell: str, other: str) -> str:
+    """Return a mark of one shell as that of its twin in another; what is not in the first shell as it is."""
+    return other + text.removeprefix(shell) if is_in_shell(text, shell) else text
+
+
+def turned_mark(text: str, places: int, count: int) -> str:
+    """Return a mark of a shell or ridge as that of the one some places on, of ``count`` about the centre.
+
+    Every other text comes back as it is.
+    """
+    found = _OWNER.match(text)
+    if found is None:
+        return text
+    numbers = ((int(number) - 1 + places) % count + 1 for number in (found["pair"] or (found["shell"],)))
+    return "".join((text[0], *map(str, numbers), text[found.end() :]))
+
+
+def ridge_name(first: int, second: int) -> str:
+    """Return the family of the blades between two shells, given by their numbers: R12."""
+    return f"R{first}{second}"
+
+
+def short_mark(text: str) -> str:
+    """Return a mark without its shell, as it stands on a drawing of that shell."""
+    mark = parse_mark(text)
+    return text.removeprefix(f"S{mark.shell}-") if mark.shell and mark.family else text
+
+
+def number_of(text: str) -> str:
+    """Return the number of a mark as it is printed in it: 031 of S1-N-031."""
+    mark = parse_mark(text)
+    return f"{mark.index:0{_WIDTH.get(mark.family, 2)}d}"
+
+
+def part_mark(whole: str | Mark, part: str) -> str:
+    """Return the mark of a plank (L, R) of a beam or of a fastener (B1, W1, T1) of a joint."""
+    return f"{whole}-{part}"
+
+
+def joint_of(text: str) -> str:
+    """Return the mark of the joint that a bolt, screw or threaded rod belongs to, or "" for what is none."""
+    found = _FASTENER.fullmatch(text)
+    return found["joint"] if found else ""

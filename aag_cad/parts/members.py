@@ -10,7 +10,7 @@ from aag_cad.design import Design
 from aag_cad.geometry.framed import FramedCurve, frames_at, nearest_station, offset_curve
 from aag_cad.network.model import CurveId, CurveNetwork, Family
 from aag_cad.parts.forming import axis_piercings
-from aag_cad.parts.marks import Mark
+from aag_cad.parts.marks import Mark, part_mark
 from aag_cad.parts.model import Beam, Blank, CrossSection, Hole, HoleUse, JointStation, Plank
 from aag_cad.units import Floats, Vector
 
@@ -63,10 +63,10 @@ def undrilled_members(design: Design, shell: int, network: CurveNetwork) -> tupl
             planks.append(_plank(design, mark, "", family, line))
             continue
         axis = offset_curve(item.curve, LAYER[family] * design.layer_offset, 0.0, item.start, item.end)
-        beams.append(Beam(mark, family, LAYER[family], (f"{mark}-L", f"{mark}-R"), axis, ()))
+        beams.append(Beam(mark, family, LAYER[family], (part_mark(mark, "L"), part_mark(mark, "R")), axis, ()))
         for side, sign in (("L", 1.0), ("R", -1.0)):
             line = offset_curve(axis, 0.0, sign * design.sibling_offset, 0.0, axis.length)
-            planks.append(_plank(design, f"{mark}-{side}", mark, family, line))
+            planks.append(_plank(design, part_mark(mark, side), mark, family, line))
     return beams, planks
 
 

@@ -3,7 +3,7 @@
 import hashlib
 
 from aag_cad.geometry.framed import FramedCurve
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import parse_mark, short_mark
 from aag_cad.parts.model import (
     Blade,
     Bolt,
@@ -53,8 +53,7 @@ def product_name(part: Part) -> str:
     mark = parse_mark(part.mark)
     match part:
         case Plank():
-            suffix = f"-{mark.part}" if mark.part else ""
-            return f"Plank {mark.family}-{mark.index:02d}{suffix}"
+            return f"Plank {short_mark(part.mark)}"
         case Stud():
             return f"Hexagon stud {part.across_flats:g} x {part.length:g}"
         case CouplingBlock():

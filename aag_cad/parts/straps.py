@@ -14,7 +14,7 @@ from aag_cad.network.model import Crossing, CurveId, CurveNetwork, NetworkCurve
 from aag_cad.parts.clearance import Obstacle, is_free, placed_points
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt
 from aag_cad.parts.joints import BuiltJoint
-from aag_cad.parts.marks import Mark
+from aag_cad.parts.marks import Mark, part_mark
 from aag_cad.parts.members import Drilling, curve_mark
 from aag_cad.parts.model import Blank, Bolt, CrossSection, Hole, Joint, Part, Strap
 from aag_cad.units import Floats, vector
@@ -85,7 +85,7 @@ def _bolt(design: Design, mark: Mark, number: int, run: _Run, place: _Place, sid
     frames = frames_at(run.curve, np.array([station]))
     normal, centre = side * frames.normal[0], frames.point[0] + offset * frames.binormal[0]
     frame = axis_frame(centre + (grip - timber / 2.0) * normal, -normal, frames.tangent[0])
-    bolt = hexagon_bolt(f"{mark}-B{number}", design.joints.bolt_diameter, grip, frame)
+    bolt = hexagon_bolt(part_mark(mark, f"B{number}"), design.joints.bolt_diameter, grip, frame)
     axis = vector(centre), vector(normal)
     return bolt, Drilling(curve_mark(mark.shell, plank), *axis, design.joints.bolt_hole, "bolt", str(mark))
 

@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 
-from aag_cad.parts.marks import Mark, parse_mark
+from aag_cad.parts.marks import Mark, parse_mark, short_mark
 
 _PAIR = 2
 
@@ -18,12 +18,6 @@ def _runs(numbers: Iterable[int]) -> list[tuple[int, ...]]:
             runs.append([number])
     pieces = ([(run[0], run[-1])] if len(run) > _PAIR else [(number,) for number in run] for run in runs)
     return [piece for listed in pieces for piece in listed]
-
-
-def short_mark(mark: str) -> str:
-    """Return a mark without its shell, as it stands on a drawing of that shell."""
-    parsed = parse_mark(mark)
-    return mark.removeprefix(f"S{parsed.shell}-") if parsed.shell and parsed.family else mark
 
 
 def mark_ranges(marks: Sequence[str]) -> tuple[str, ...]:

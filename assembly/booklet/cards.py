@@ -9,14 +9,13 @@ import numpy as np
 
 from aag_cad.language import Language, figure, say, says, words_table
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import shell_of
+from aag_cad.parts.marks import joint_of, parse_mark, shell_of, short_mark
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Bolt, Gridshell, Part, Plank, Rod, Screw, Shell, all_parts, shell_parts
-from assembly.base.mark_ranges import joined_ranges, mark_ranges, short_mark
+from assembly.base.mark_ranges import joined_ranges, mark_ranges
 from assembly.base.names import part_name, phase_name
 from assembly.base.part_groups import driven_from_outside
 from assembly.base.steps import PHASES, Plan, Step
-from assembly.graph.gridshell_graph import joint_of
 from assembly.plan.assembly_plan import lifted
 from assembly.plan.shape_control import control_figures, sling_points
 
@@ -78,8 +77,8 @@ def _beam_table(shell: Shell, step: Step, weights: Weights, language: Language) 
     rows = []
     for beam in beams:
         left, right = (lengths[mark] for mark in beam.planks)
-        blocks = [place.joint for place in beam.joints if "-K-" in place.joint]
-        studs = [place.joint for place in beam.joints if "-N-" in place.joint]
+        blocks = [place.joint for place in beam.joints if parse_mark(place.joint).family == "K"]
+        studs = [place.joint for place in beam.joints if parse_mark(place.joint).family == "N"]
         rows.append([
             short_mark(beam.mark), _length(left), _length(right), str(len(blocks)), str(len(studs)),
             _mass(weights[beam.mark][0], language),

@@ -5,13 +5,13 @@ from collections.abc import Iterator, Mapping
 from html import escape
 from typing import Any
 
+from aag_cad.parts.marks import joint_of
 from aag_cad.parts.model import Gridshell
 from assembly.base.steps import Phase, Plan
 from assembly.booklet.contents import Booklet, common_of, sequence_booklet
 from assembly.booklet.graph_page import graph_html
 from assembly.booklet.markup import card_section, contents, filled_page, html_list, html_table, rich_text, zoomed
 from assembly.booklet.shared_pictures import shared_pictures
-from assembly.graph.gridshell_graph import joint_of
 from assembly.plan.planned import Planned
 
 __all__ = ["graph_html", "handled_marks", "page_html", "sequence_html"]

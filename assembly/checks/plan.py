@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import shells_of
 from aag_cad.parts.model import Footing, Gridshell, Part, Rod, Shell, Shoe, ridge_parts, shell_parts
 from assembly.base.steps import Plan, Step
 from assembly.checks.stability import ancestors, locking_problems, prop_problems, travel_problems
@@ -157,7 +157,7 @@ def _ridges(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
     forced, at = ancestors(plan), {mark: step for step in plan.steps for mark in step.marks}
     stood = [(mark, step) for step in plan.steps if step.phase in ("stand", "splice") for mark in step.assemblies]
     for part in (part for part in ridge_parts(gridshell) if part.mark in at):
-        for shell in (f"S{digit}" for digit in parse_mark(part.mark).family[1:]):
+        for shell in shells_of(part.mark):
             steps = [step.id for mark, step in stood if mark == shell]
             if not steps or not forced[at[part.mark].id].issuperset(steps):
                 yield f"{part.mark}: nothing forces the standing of {shell} before step {at[part.mark].id}"

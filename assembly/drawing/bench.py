@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from aag_cad.parts.index import index_of
+from aag_cad.parts.marks import number_of, parse_mark, short_mark
 from aag_cad.parts.model import Beam, CouplingBlock, Plank, Shell
 from assembly.drawing.svg import Style, circle, group, label_svg, placed_labels, rectangle, svg, text
 
@@ -34,16 +35,16 @@ def _strip(
     places = [(place.joint, _LEFT + place.station * scale) for place in beam.joints]
     made = [(mark, x, blocks[mark].length * scale) for mark, x in places if mark in blocks]
     yield group((rectangle(x - long / 2.0, y - half, long, _GAP_HEIGHT) for _, x, long in made), _BLOCK)
-    studs = [(mark, x) for mark, x in places if mark.split("-")[1] == "N"]
+    studs = [(mark, x) for mark, x in places if parse_mark(mark).family == "N"]
     yield group((circle((x, y), 7.0) for _, x in studs), _OPEN)
     end = _LEFT + beam.curve.length * scale
     for listed, height, away in (([(m, x) for m, x, _ in made], tops[0] - 16.0, -19.0), (studs, tops[1] + 29.0, 19.0)):
-        wanted = [(mark[-3:], np.array([(x, height), (x, height + away)])) for mark, x in listed]
+        wanted = [(number_of(mark), np.array([(x, height), (x, height + away)])) for mark, x in listed]
         yield label_svg(placed_labels(wanted, _NUMBER, (0.0, 0.0, end + 200.0, 1e6)), framed=False)
     triangle = f'<path d="M{_LEFT - 6:g} {y:g}l-26 -12v24Z"/>'
     sides = (text(side, _LEFT - 48.0, top + _PLANK_HEIGHT / 2.0, 22.0) for side, top in zip("LR", tops, strict=True))
     rows = (text(name, _LEFT - 20.0, h, 20.0, bold=True) for name, h in (("K", tops[0] - 16.0), ("N", tops[1] + 29.0)))
-    name = text(beam.mark.split("-", 1)[1], 0.0, y, 27.0, "start", bold=True)
+    name = text(short_mark(beam.mark), 0.0, y, 27.0, "start", bold=True)
     yield group([triangle, *sides, *rows, name], _INK)
 
 

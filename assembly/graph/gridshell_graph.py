@@ -99,11 +99,6 @@ def part_point(part: Part) -> Floats:
             return np.array(frame.origin)
 
 
-def joint_of(mark: str) -> str:
-    """Return the mark of the joint that a bolt, screw or threaded rod belongs to."""
-    return mark.rpartition("-")[0]
-
-
 def _hub(joint: Joint) -> str:
     """Return the member that the others are tied to: the one with the joint's mark, else its coupling block, or ""."""
     if joint.mark in joint.members:
@@ -128,7 +123,7 @@ def _ties(joint: Joint, beams: Mapping[str, str]) -> Iterator[tuple[str, str, Ed
             if a not in beams or b not in beams:
                 yield a, b, usual
     for fastener in joint.fasteners:
-        yield hub or joint.members[0], fastener, _BY_FASTENER[parse_mark(fastener).part[0]]
+        yield hub or joint.members[0], fastener, _BY_FASTENER[parse_mark(fastener).letter]
 
 
 def _crossings(shell: Shell) -> Iterator[tuple[str, str, JointEdge]]:

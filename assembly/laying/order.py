@@ -60,7 +60,7 @@ class FlatOrder:
     runs: tuple[tuple[str, ...], ...]
     rows: tuple[tuple[str, ...], ...]
     slides: tuple[Slide, ...] = ()
-    stacks: Mapping[str, Point] = field(default_factory=dict)
+    stacks: Mapping[tuple[str, str], Point] = field(default_factory=dict)
     carried_m: float = 0.0
     path_m: float = 0.0
     tree_m: float = 0.0
@@ -177,24 +177,29 @@ def _runs(precedence: "nx.DiGraph[str]", sorts: Mapping[str, _Sort]) -> tuple[tu
     return tuple(runs)
 
 
+def _stack_of(sort: _Sort) -> tuple[str, str]:
+    shell, _, family = sort
+    return shell, family
+
+
 def _stacks(
-    lines: Mapping[str, Line], sorts: Mapping[str, _Sort], slides: Sequence[Slide], names: Mapping[_Sort, str]
-) -> tuple[dict[str, Point], float]:
+    lines: Mapping[str, Line], sorts: Mapping[str, _Sort], slides: Sequence[Slide]
+) -> tuple[dict[tuple[str, str], Point], float]:
     """Return the best place of each stack, and the metres from all stacks to the lines and back."""
-    calls: dict[str, list[Point]] = defaultdict(list)
+    calls: dict[tuple[str, str], list[Point]] = defaultdict(list)
     slid, pushed = {slide.unit: slide for slide in slides}, 0.0
     for unit, line in sorted(lines.items()):
         first = line.middle
         if unit in slid:
             first = line.before(slid[unit].end)
             pushed += float(np.hypot(*np.subtract(first, line.middle)))
-        calls[names[sorts[unit]]] += [first, line.middle]
+        calls[_stack_of(sorts[unit])] += [first, line.middle]
     points = np.array([end for line in lines.values() for end in (line.start, line.end)]).reshape(-1, 2)
     places = stack_places(points) if len(points) else points
-    stacks, carried = dict[str, Point](), pushed
-    for name, listed in sorted(calls.items()):
+    stacks, carried = dict[tuple[str, str], Point](), pushed
+    for stack, listed in sorted(calls.items()):
         best, walked = best_stack(places, np.array(listed))
-        stacks[name] = (float(places[best, 0]), float(places[best, 1]))
+        stacks[stack] = (float(places[best, 0]), float(places[best, 1]))
         carried += walked
     return stacks, carried / MM_PER_M
 
@@ -210,12 +215,11 @@ def _floor_order(
     """Return the order on one floor."""
     slid = {slide.unit for slide in slides}
     runs = _runs(precedence, {unit: sort for unit, sort in sorts.items() if unit not in slid})
-    names = {sort: "-".join(part for part in (sort[0], sort[2]) if part) for sort in set(sorts.values())}
-    stacks, carried = _stacks(lines, sorts, slides, names)
+    stacks, carried = _stacks(lines, sorts, slides)
     laid, stepped = [], 0
     for run in runs:
         order = sweep_order({unit: lines[unit] for unit in run})
-        forward, backward = stepped_over([lines[unit] for unit in order], stacks[names[sorts[run[0]]]])
+        forward, backward = stepped_over([lines[unit] for unit in order], stacks[_stack_of(sorts[run[0]])])
         falling = order[0] > order[-1]
         laid.append(order if (forward, falling) <= (backward, not falling) else order[::-1])
         stepped += min(forward, backward)
@@ -319,7 +323,7 @@ def flat_order_of(
         runs=tuple(run for order in orders for run in order.runs),
         rows=tuple(row for order in orders for row in order.rows),
         slides=tuple(slide for order in orders for slide in order.slides),
-        stacks={name: place for order in orders for name, place in order.stacks.items()},
+        stacks={stack: place for order in orders for stack, place in order.stacks.items()},
         carried_m=sum(order.carried_m for order in orders),
         path_m=sum(order.path_m for order in orders),
         tree_m=sum(order.tree_m for order in orders),

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from aag_cad.language import Language, figure, say, says, words_table
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import in_other_shell, short_mark
 from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
@@ -232,7 +232,7 @@ def _alike(one: Shell, other: Shell) -> bool:
     """Return whether two shells have the same planks and joints but for the shell's number in their marks."""
 
     def marks(shell: Shell) -> list[str]:
-        return [_short(plank.mark) for plank in shell.planks] + [_short(joint.mark) for joint in shell.joints]
+        return [short_mark(plank.mark) for plank in shell.planks] + [short_mark(joint.mark) for joint in shell.joints]
 
     return (
         marks(one) == marks(other)
@@ -244,10 +244,9 @@ def _alike(one: Shell, other: Shell) -> bool:
 
 def _renumbered(order: LockingOrder, shell: str) -> LockingOrder:
     """Return the order for another shell: the same with that shell's number in all marks."""
-    number = parse_mark(shell).shell
 
     def moved(marks: Sequence[str]) -> Group:
-        return tuple(str(replace(parse_mark(mark), shell=number)) for mark in marks)
+        return tuple(in_other_shell(mark, order.shell, shell) for mark in marks)
 
     def at_other(step: LockingStep) -> LockingStep:
         props = tuple(replace(prop, joint=moved([prop.joint])[0]) for prop in step.props)
@@ -312,7 +311,7 @@ def locking_table(order: LockingOrder, language: Language = "en") -> dict[str, A
         props = joined_ranges([prop.joint for prop in step.props])
         head, tail = str(i) if i < len(order.steps) else "", f"{step.propped:.0f}" if props else ""
         modes = [str(step.soft_modes), *hertz, ""][:3]
-        rows.append([head, told[i], *modes, f"{step.displacement:.0f}", _short(step.at), props, tail])
+        rows.append([head, told[i], *modes, f"{step.displacement:.0f}", short_mark(step.at), props, tail])
     return {"head": list(says(language, "pictures.locking.head")), "rows": rows}
 
 
@@ -349,10 +348,6 @@ def _scale(top: float) -> tuple[float, list[float]]:
     return count * step, [i * step for i in range(count + 1)]
 
 
-def _short(mark: str) -> str:
-    return mark.partition("-")[2]
-
-
 def _axes(
     x: Floats, order: LockingOrder, ticks: Sequence[float], y: Callable[[float], float], language: Language
 ) -> Iterator[str]:
@@ -366,7 +361,7 @@ def _axes(
     size = min(_SMALL, float(x[1] - x[0]) / (_LETTERS * CHARACTER))
     for place, step, number in zip(x.tolist(), order.steps, range(len(order.steps)), strict=True):
         yield text(str(number), place, y(0.0) + 30, _SIZE, bold=True)
-        names = [_short(mark) for mark in step.marks]
+        names = [short_mark(mark) for mark in step.marks]
         names = names if len(names) <= _LINES else [*names[: _LINES - 1], f"+{len(names) - _LINES + 1}"]
         for i, name in enumerate(names):
             yield text(name, place, y(0.0) + 68 + 30 * i, size)

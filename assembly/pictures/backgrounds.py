@@ -7,7 +7,7 @@ import numpy as np
 
 from aag_cad.language import Language
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import in_other_shell, short_mark
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import (
     ClampingBar,
@@ -22,7 +22,6 @@ from aag_cad.parts.model import (
     shell_parts,
 )
 from aag_cad.units import Floats
-from assembly.base.mark_ranges import short_mark
 from assembly.base.part_groups import shell_kit
 from assembly.base.steps import DOWN_PHASES, Plan, Step
 from assembly.drawing.outline import Outline, ridge_outline, shell_outline, vault_outline
@@ -88,19 +87,13 @@ def twin_step(step: Step, shell: str, twin: str) -> Step:
     """Return a step as its twin's shell would have it: with that shell's number in all marks."""
     if shell == twin:
         return step
-    number = parse_mark(twin).shell
 
     def moved(marks: Sequence[str]) -> tuple[str, ...]:
-        return tuple(twin_mark(mark, shell, number) for mark in marks)
+        return tuple(in_other_shell(mark, shell, twin) for mark in marks)
 
     return replace(
         step, shell=twin, marks=moved(step.marks), assemblies=moved(step.assemblies), props=moved(step.props)
     )
-
-
-def twin_mark(mark: str, shell: str, number: int) -> str:
-    """Return a mark with another shell's number in place of that of ``shell``; other marks as they are."""
-    return f"S{number}{mark.removeprefix(shell)}" if mark == shell or mark.startswith(f"{shell}-") else mark
 
 
 def _in_place(plan: Plan, gridshell: Gridshell) -> dict[str, frozenset[str]]:

@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 
+from aag_cad.parts.marks import joint_of, short_mark
 from aag_cad.parts.model import Plank, Shell
-from assembly.base.mark_ranges import short_mark
 from assembly.base.steps import Step
 from assembly.drawing.bench import beam_strips_svg
 from assembly.drawing.steel_sections import strap_section_svg
-from assembly.graph.gridshell_graph import joint_of
 from assembly.pictures.backgrounds import PAGE_WIDTH, Sheets
 from assembly.pictures.named_marks import feet_of, middle_of, numbers_of
 from assembly.pictures.site_scenes import elevation_svg, foot_sections

@@ -6,10 +6,9 @@ import numpy as np
 
 from aag_cad.language import Language, say
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import number_of, parse_mark, short_mark
 from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
-from assembly.base.mark_ranges import short_mark
 from assembly.drawing.outline import Outline, shell_outline
 from assembly.drawing.svg import (
     Box,
@@ -78,7 +77,7 @@ def _names(lines: dict[str, Floats], sheet: Box, taken: list[Box]) -> str:
 
 def _name(mark: str) -> str:
     """Return what stands beside a joint: its number; its short mark where others have like numbers."""
-    return mark.rpartition("-")[2] if parse_mark(mark).family in ("N", "K") else short_mark(mark)
+    return number_of(mark) if parse_mark(mark).family in ("N", "K") else short_mark(mark)
 
 
 def _crossing(shell: Shell) -> dict[str, tuple[str, ...]]:

@@ -11,10 +11,10 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from aag_cad.language import Language, figure, say, says
+from aag_cad.parts.marks import number_of, short_mark
 from aag_cad.parts.model import Shell
 from aag_cad.units import MM_PER_M, Floats
 from assembly.base.errors import PlanError
-from assembly.base.mark_ranges import short_mark
 from assembly.drawing.svg import (
     Box,
     Label,
@@ -79,8 +79,8 @@ def _stacks(state: FlatState, order: FlatOrder | None) -> dict[str, Floats]:
     """Return the places of the stacks of this shell on the floor (2,), by family; none for a ring."""
     if order is None or state.view_origin is None:
         return {}
-    own = {name: place for name, place in order.stacks.items() if name.split("-")[0] == state.shell}
-    return {name.partition("-")[2]: np.array(place) + state.view_origin for name, place in sorted(own.items())}
+    own = ((family, place) for (shell, family), place in sorted(order.stacks.items()) if shell == state.shell)
+    return {family: np.array(place) + state.view_origin for family, place in own}
 
 
 def _sheet(state: FlatState, stacks: dict[str, Floats], page: Page) -> _Sheet:
@@ -174,7 +174,7 @@ def _names(state: FlatState, sheet: _Sheet, page: Box, taken: list[Box]) -> tupl
 
 def _studs(state: FlatState, sheet: _Sheet, page: Box, taken: list[Box]) -> str:
     places = {mark: sheet(point[None])[0] for mark, point in state.studs.items()}
-    wanted = [(mark.rpartition("-")[2], places_round(place, 29.0)) for mark, place in places.items()]
+    wanted = [(number_of(mark), places_round(place, 29.0)) for mark, place in places.items()]
     dots = [(x - 9.0, y - 9.0, x + 9.0, y + 9.0) for x, y in (place.tolist() for place in places.values())]
     labels = placed_labels(wanted, _NUMBER, page, [*taken, *dots])
     return label_svg(labels, framed=False) + group((circle(place, 8.0) for place in places.values()), _STUD)

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import TypeVar
 
+from aag_cad.parts.marks import number_of
 from aag_cad.parts.model import Shell
 
 _T = TypeVar("_T")
@@ -10,7 +11,7 @@ _T = TypeVar("_T")
 
 def numbers_of(marks: Sequence[str]) -> dict[str, str]:
     """Return marks with their last numbers."""
-    return {mark: mark.rpartition("-")[2] for mark in marks}
+    return {mark: number_of(mark) for mark in marks}
 
 
 def middle_of(pieces: Sequence[_T]) -> Sequence[_T]:

@@ -4,18 +4,16 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from aag_cad.parts.marks import parse_mark, shell_of
+from aag_cad.parts.marks import in_other_shell, is_in_shell, joint_of, parse_mark, shell_of, short_mark
 from aag_cad.parts.model import Shell
-from assembly.base.mark_ranges import short_mark
 from assembly.base.part_groups import driven_from_outside
 from assembly.base.steps import DOWN_PHASES, Plan, Step
 from assembly.drawing.bench import beam_strips_svg
 from assembly.drawing.outline import shell_outline
 from assembly.drawing.steel_sections import strap_section_svg
 from assembly.drawing.svg import group, path, svg
-from assembly.graph.gridshell_graph import joint_of
 from assembly.graph.interlacing import Slide
-from assembly.pictures.backgrounds import MARGIN, PAGE_WIDTH, Sheets, sheets_of, twin_mark, twin_step
+from assembly.pictures.backgrounds import MARGIN, PAGE_WIDTH, Sheets, sheets_of, twin_step
 from assembly.pictures.down_scenes import down_pictures
 from assembly.pictures.named_marks import middle_of, numbers_of
 from assembly.pictures.segment_scenes import cut_outline, moved_segments, segment_scene
@@ -53,7 +51,7 @@ def _made_beams(shell: Shell, step: Step) -> tuple[str, ...]:
 
 def _joints_of(step: Step, letters: str = "BW") -> tuple[str, ...]:
     """Return the joints that a step's bolts (B) and screws (W) belong to."""
-    fasteners = (mark for mark in step.marks if parse_mark(mark).part[:1] in tuple(letters))
+    fasteners = (mark for mark in step.marks if parse_mark(mark).letter in tuple(letters))
     return tuple(dict.fromkeys(joint_of(mark) for mark in fasteners))
 
 
@@ -141,8 +139,7 @@ def _twinned(sheets: Sheets, step: Step) -> tuple[Shell, Step, frozenset[str]]:
     home = home_shell(step)
     twin = sheets.twins[home]
     shell = next(shell for shell in sheets.gridshell.shells if shell.mark == twin)
-    number = parse_mark(twin).shell
-    there = {twin_mark(mark, home, number) for mark in sheets.before[step.id] if mark.startswith(f"{home}-")}
+    there = {in_other_shell(mark, home, twin) for mark in sheets.before[step.id] if is_in_shell(mark, home)}
     return shell, twin_step(step, home, twin), frozenset(there)
 
 

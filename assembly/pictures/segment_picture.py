@@ -7,10 +7,10 @@ import numpy as np
 
 from aag_cad.language import Language, say, says
 from aag_cad.parts.index import index_of
+from aag_cad.parts.marks import short_mark
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Plank, Shell
 from aag_cad.units import Floats
-from assembly.base.mark_ranges import short_mark
 from assembly.drawing.outline import Outline, shell_outline
 from assembly.drawing.part_outlines import plank_rings
 from assembly.drawing.svg import (

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from aag_cad.parts.marks import is_in_shell, short_mark
 from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
-from assembly.base.mark_ranges import short_mark
 from assembly.base.steps import Plan, Step
 from assembly.drawing.outline import Outline
 from assembly.pictures.named_marks import feet_of, numbers_of
@@ -100,7 +100,7 @@ def segment_scene(shell: Shell, step: Step, segmentation: Segmentation, stood: S
         names = {line: short_mark(line) for segment in moved for line in segment.geodesics}
         numbers = numbers_of(feet) | {mark: short_mark(mark) for mark in step.props}
         return Scene(there=there, new=new, names=names, rings=feet, numbers=numbers, props=step.props)
-    splices = [splice for splice in segmentation.splices if splice.line.startswith(f"{shell.mark}-")]
+    splices = [splice for splice in segmentation.splices if is_in_shell(splice.line, shell.mark)]
     splices = _between(splices, moved) if moved else splices
     lines = dict.fromkeys(splice.line for splice in splices)
     dots = tuple(dict.fromkeys(splice.joint for splice in splices if splice.joint))

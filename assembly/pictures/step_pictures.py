@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.units import Floats
 from assembly.drawing.outline import Outline
 from assembly.drawing.svg import (
@@ -114,7 +114,7 @@ def _labels(outline: Outline, scene: Scene) -> str:
     """Return the labels of planks (framed) and joints (plain), clear of the dots and of each other."""
     sheet: Box = (0.0, 0.0, outline.width, outline.height)
     new = ((mark, piece) for mark, piece in outline.pieces.items() if mark in scene.new)
-    fittings = [piece for mark, piece in new if parse_mark(mark).family[0] == "R"]
+    fittings = [piece for mark, piece in new if parse_mark(mark).family == "R" or not shell_of(mark)]
     dots = (outline.points[mark].tolist() for mark in (*scene.dots, *scene.rings, *scene.props))
     taken: list[Box] = [(x - _DOT, y - _DOT, x + _DOT, y + _DOT) for x, y in dots]
     taken += [(*piece.min(axis=0).tolist(), *piece.max(axis=0).tolist()) for piece in fittings]
@@ -146,7 +146,7 @@ def scene_items(outline: Outline, scene: Scene) -> Iterable[str]:
     yield from _piece_items(outline, scene, beneath=True)
     for mark, points in outline.planks.items():
         if mark in scene.new:
-            yield group([path(points)], NEW[mark.split("-")[1]])
+            yield group([path(points)], NEW[parse_mark(mark).family])
         elif mark in shown:
             yield group([path(points)], FAINT_NEW if mark in scene.worked_on else THERE)
     yield from _piece_items(outline, scene, beneath=False)

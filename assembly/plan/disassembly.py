@@ -10,11 +10,11 @@ import numpy as np
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.language import Figure, Language, say, says
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import is_in_shell, parse_mark, shells_of, short_mark
 from aag_cad.parts.model import Bolt, Gridshell, Rod, Shell, Timber
 from aag_cad.units import MM_PER_M
 from assembly.base.crew import Crew, crew_of, hands_for
-from assembly.base.mark_ranges import joined_ranges, short_mark
+from assembly.base.mark_ranges import joined_ranges
 from assembly.base.part_groups import Kit, shell_kit
 from assembly.base.steps import DownPhase, Plan, Step
 from assembly.graph.layers import crossing_levels, lying_unit
@@ -88,7 +88,7 @@ def _site_tasks(gridshell: Gridshell, kits: Mapping[str, Kit]) -> Iterator[_Task
         yield _Task(f"site.down.prop.{mark}", "prop", "prop", {"shell": mark}, "", tuple(bare), (), (mark,))
     before = propped = tuple(f"site.down.prop.{mark}" for mark in kits)
     for a, b in reversed(ridge_pairs(gridshell)):
-        blades = [joint for joint in gridshell.joints if {f"S{digit}" for digit in joint.mark[1:3]} == {a, b}]
+        blades = [joint for joint in gridshell.joints if set(shells_of(joint.mark)) == {a, b}]
         marks = (*_flat(joint.fasteners for joint in blades), *(joint.mark for joint in blades))
         task_id = f"site.down.ridge.{a}.{b}"
         yield _Task(task_id, "open ridges", "ridge", {"a": a, "b": b}, "", before, marks, (a, b), 2 * PAIR)
@@ -262,7 +262,7 @@ def _extras(
     if not own or segmentation is None:
         return tuple(splice_extras(language, segmentation, set(task.marks), "unmade"))
     shell = own[0].shell
-    lines = dict.fromkeys(short_mark(s.line) for s in segmentation.splices if s.line.startswith(f"{shell}-"))
+    lines = dict.fromkeys(short_mark(s.line) for s in segmentation.splices if is_in_shell(s.line, shell))
     told: dict[str, Figure] = {
         "segments": ", ".join(s.name for s in own),
         "lines": ", ".join(lines),

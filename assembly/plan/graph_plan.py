@@ -11,9 +11,9 @@ from aag_cad.design_making import Minutes
 from aag_cad.errors import MarkError
 from aag_cad.findings import Finding
 from aag_cad.language import Figure, Language, say, says, text
+from aag_cad.parts.marks import short_mark
 from aag_cad.units import MM_PER_M
 from assembly.base.crew import Crew, crew_of, hands_for, lifting_findings, named_marks
-from assembly.base.mark_ranges import short_mark
 from assembly.base.steps import Phase, Plan, Step
 from assembly.checks.graph_plan import check_graph_plan
 from assembly.graph.interlacing import Crossing, Interlacing, Slide, interlacing

@@ -9,10 +9,9 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from aag_cad.language import Figure, Language, say
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import joint_of, parse_mark, short_mark
 from aag_cad.parts.model import Shell
-from assembly.base.mark_ranges import joined_ranges, short_mark
-from assembly.graph.gridshell_graph import joint_of
+from assembly.base.mark_ranges import joined_ranges
 from assembly.plan.shell_work import EVERYONE, Work
 from assembly.transport.seams import Seam, seams, segments_of
 from assembly.transport.segment_sheet import brace_words
@@ -24,7 +23,7 @@ _KINDS = {"W": "screw", "B": "bolt", "K": "block", "R": "strap", "N": "stud"}
 
 def _fasteners(language: Language, marks: Sequence[str]) -> str:
     """Return how many fasteners of each kind there are, in words."""
-    kinds = Counter(_KINDS.get(parse_mark(mark).part[:1] or parse_mark(mark).family, "bolt") for mark in marks)
+    kinds = Counter(_KINDS.get(parse_mark(mark).letter, "bolt") for mark in marks)
     counted = ((kind if count == 1 else f"{kind}s", count) for kind, count in sorted(kinds.items()))
     return ", ".join(say(language, f"site.count.{kind}", count=count) for kind, count in counted)
 

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from itertools import chain, groupby
 
 from aag_cad.language import Figure, Language, say
+from aag_cad.parts.marks import short_mark
 from aag_cad.parts.model import Shell
-from assembly.base.mark_ranges import joined_ranges, short_mark
+from assembly.base.mark_ranges import joined_ranges
 from assembly.base.part_groups import Kit, shell_kit
 from assembly.base.steps import Phase
 from assembly.laying.order import FlatOrder, groups_of, row_groups

@@ -5,11 +5,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from aag_cad.language import Figure, Language, say
-from aag_cad.parts.marks import parse_mark, shell_of
+from aag_cad.parts.marks import joint_of, shell_of, shells_of, short_mark
 from aag_cad.parts.model import Gridshell, Shell
-from assembly.base.mark_ranges import joined_ranges, short_mark
+from assembly.base.mark_ranges import joined_ranges
 from assembly.base.part_groups import Kit, shell_kit
-from assembly.graph.gridshell_graph import joint_of
 from assembly.locking.order import LockingOrder
 from assembly.plan.parting import brace_extras, seam_extras
 from assembly.plan.shell_work import EVERYONE, PAIR, Work
@@ -33,7 +32,7 @@ class _Site:
 
 def ridge_pairs(gridshell: Gridshell) -> tuple[tuple[str, str], ...]:
     """Return the pairs of shells that meet along a ridge: those that blades or joints join, else neighbours."""
-    joined = {frozenset(f"S{digit}" for digit in parse_mark(blade.mark).family[1:]) for blade in gridshell.blades}
+    joined = {frozenset(shells_of(blade.mark)) for blade in gridshell.blades}
     joined |= {frozenset(shell_of(mark) for mark in joint.members) - {""} for joint in gridshell.joints}
     pairs = {(min(pair), max(pair)) for pair in joined if len(pair) == PAIR}
     if not pairs:
@@ -161,7 +160,7 @@ def _ridges(site: _Site, stood: dict[str, tuple[Work, ...]]) -> Iterator[Work]:
     props = {mark: tuple(joint for work in works for joint in work.props) for mark, works in stood.items()}
     every = tuple(dict.fromkeys(joint for joints in props.values() for joint in joints))
     for i, (a, b) in enumerate(pairs):
-        blades = [blade.mark for blade in gridshell.blades if set(parse_mark(blade.mark).family[1:]) == {a[1:], b[1:]}]
+        blades = [blade.mark for blade in gridshell.blades if set(shells_of(blade.mark)) == {a, b}]
         fasteners = [
             mark
             for joint in gridshell.joints

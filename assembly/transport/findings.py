@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from aag_cad.findings import Finding, Severity
 from aag_cad.language import Figure, Text, text
-from assembly.base.mark_ranges import short_mark
+from aag_cad.parts.marks import short_mark
 from assembly.transport.cut_pieces import Divisible, Run, run_between, run_splices
 from assembly.transport.lifting import LEAST_MARGIN, Lifting
 from assembly.transport.loading import Pose

@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 
 from aag_cad.parts.index import index_of
+from aag_cad.parts.marks import joint_of
 from aag_cad.parts.model import Plank, Shell
 from assembly.graph.cut_lines import tracks
-from assembly.graph.gridshell_graph import joint_of
 from assembly.transport.segments import Segment, Segmentation
 from assembly.transport.splices import Splice
 

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 from typing import TypeAlias
 
 from aag_cad.language import Figure, Language, say, says
-from aag_cad.parts.marks import parse_mark
-from assembly.base.mark_ranges import joined_ranges, short_mark
+from aag_cad.parts.marks import parse_mark, short_mark
+from assembly.base.mark_ranges import joined_ranges
 from assembly.transport.lifting import Brace
 from assembly.transport.search import Limits
 from assembly.transport.segments import Segment, Segmentation

@@ -26,7 +26,7 @@ from aag_cad.mechanics.frame.system import (
     mass_matrix,
     part_stiffness,
 )
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import parse_mark, short_mark
 from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.parts.products import product_key
 from aag_cad.units import Floats, Ints, Vector
@@ -272,20 +272,16 @@ def segment_stiffness(
     return SegmentStiffness(segment.name, holds)
 
 
-def _short(mark: str) -> str:
-    return mark.partition("-")[2]
-
-
 def _alike_key(shell: Shell, segment: Segment) -> tuple[object, ...]:
     """Return what segments have in common that are equally stiff: equal shells, cut, slung, propped, braced alike."""
     return (
         tuple(product_key(plank) for plank in shell.planks),
         tuple((joint.kind, joint.point) for joint in shell.joints),
-        tuple(map(_short, segment.geodesics)),
-        tuple((_short(piece.plank), piece.start, piece.end) for piece in segment.pieces),
-        tuple(map(_short, segment.lifting.studs)),
-        tuple(map(_short, segment.props)),
-        tuple((brace.kind, _short(brace.start), _short(brace.end)) for brace in segment.braces),
+        tuple(map(short_mark, segment.geodesics)),
+        tuple((short_mark(piece.plank), piece.start, piece.end) for piece in segment.pieces),
+        tuple(map(short_mark, segment.lifting.studs)),
+        tuple(map(short_mark, segment.props)),
+        tuple((brace.kind, short_mark(brace.start), short_mark(brace.end)) for brace in segment.braces),
     )
 
 

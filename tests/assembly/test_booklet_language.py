@@ -8,14 +8,13 @@ from typing import Any
 import pytest
 from pypdf import PdfReader
 
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import joint_of, parse_mark
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.resources import template
 from assembly.base.steps import PHASES
 from assembly.booklet.contents import Booklet, common_of, disassembly_booklet, sequence_booklet
 from assembly.booklet.pdf import booklet_pdf
 from assembly.booklet.words import booklet_words
-from assembly.graph.gridshell_graph import joint_of
 from assembly.plan.planned import Planned
 
 # Words that stand on nearly every English card and are no words, marks or names in German.

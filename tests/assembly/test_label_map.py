@@ -7,10 +7,9 @@ from xml.etree import ElementTree
 import pytest
 
 from aag_cad.language import LANGUAGES, Language
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import parse_mark, short_mark
 from aag_cad.parts.model import Shell
 from assembly.base.errors import PlanError
-from assembly.base.mark_ranges import short_mark
 from assembly.drawing.svg import Box, Label, label_box
 from assembly.pictures.label_map import MAP_SIZE, label_map_svg
 from assembly.pictures.layer_legend import layer_legend_svg

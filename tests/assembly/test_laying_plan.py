@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from aag_cad.language import LANGUAGES
+from aag_cad.parts.marks import short_mark
 from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
-from assembly.base.mark_ranges import short_mark
 from assembly.drawing.svg import Box, Label, label_box
 from assembly.laying.flattening import FlatState, flat_state
 from assembly.laying.order import FlatOrder
@@ -95,7 +95,7 @@ def test_the_grid_is_numbered_in_whole_metres(shell: Shell, state: FlatState) ->
 def test_stacks_stand_beside_the_floor_in_the_plan(shell: Shell, state: FlatState) -> None:
     assert state.view_origin is not None
     beside = np.array([state.size[0] / 2.0, -1000.0]) - state.view_origin
-    order = FlatOrder((), (), stacks={"S1-A1": (float(beside[0]), float(beside[1])), "S2-A1": (0.0, 0.0)})
+    order = FlatOrder((), (), stacks={("S1", "A1"): (float(beside[0]), float(beside[1])), ("S2", "A1"): (0.0, 0.0)})
     plain, stacked = laying_plan_svg(shell, state), laying_plan_svg(shell, state, order, "de")
     (found,) = [label for label in texts(stacked) if label.text == "Stapel A1"]
     lowest = max(circles(stacked, 8.0)[: len(state.studs), 1])

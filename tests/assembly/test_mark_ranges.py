@@ -5,8 +5,8 @@ import re
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aag_cad.parts.marks import Mark, parse_mark
-from assembly.base.mark_ranges import joined_ranges, mark_ranges, short_mark
+from aag_cad.parts.marks import Mark, parse_mark, short_mark
+from assembly.base.mark_ranges import joined_ranges, mark_ranges
 
 indices = st.integers(1, 30)
 joints = st.builds(Mark, st.integers(1, 3), st.sampled_from(["K", "N", "G"]), indices)

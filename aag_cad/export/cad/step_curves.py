@@ -17,6 +17,8 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from aag_cad.export.cad.step_text import Header, kernel_settings, named, placement, step_bytes
 from aag_cad.files import write_bytes
 from aag_cad.network.model import CurveNetwork, NetworkCurve
+from aag_cad.parts.marks import short_mark
+from aag_cad.parts.members import curve_mark
 from aag_cad.units import Floats
 from aag_cad.web.interpolation import InterpolatedSurface
 
@@ -85,7 +87,7 @@ def _document(network: CurveNetwork, surface: InterpolatedSurface | None) -> TDo
             continue
         group = _group(shapes, family)
         for item in items:
-            _add(shapes, group, curve_edge(item), f"{family}-{item.id.number:02d}")
+            _add(shapes, group, curve_edge(item), short_mark(curve_mark(1, item.id)))
         named(shapes.AddComponent(whole, group, placement(None)), family)
     shapes.UpdateAssemblies()
     return document

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from aag_cad.export.ifc.frame import Entity, IfcModel
 from aag_cad.export.ifc.sets import Property, write_property_set
-from aag_cad.parts.marks import parse_mark, shell_of
+from aag_cad.parts.marks import shells_of
 from aag_cad.parts.model import Part
 from assembly.base.steps import Step
 
@@ -13,8 +13,7 @@ ASSEMBLY = "AAG_Assembly"
 
 def segment_of(mark: str) -> str:
     """Return the segment of a part: the mark of its shell, or of the two shells that it lies between, as S1-S2."""
-    family = parse_mark(mark).family
-    return shell_of(mark) or f"S{family[1]}-S{family[2]}"
+    return "-".join(shells_of(mark))
 
 
 def _group_rows(segment: str, step: Step | None) -> list[Property]:

@@ -26,14 +26,16 @@ from aag_cad.export.workshop.blank_drawings import (
 )
 from aag_cad.export.workshop.dxf import dxf_bytes
 from aag_cad.files import csv_text, write_bytes, write_text
+from aag_cad.network.model import CurveId
 from aag_cad.parts.facade import strip_neighbours
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.marks import parse_mark, short_mark
+from aag_cad.parts.members import curve_mark
 from aag_cad.parts.model import ClampingBar, Gridshell, Mullion, Strip
 from aag_cad.parts.products import product_key
 from aag_cad.parts.quantities import kind, mass, smallest_radius
 from aag_cad.parts.strips import FlatPattern, chord_offsets, flat_pattern, sheet_radius
 from aag_cad.units import MM2_PER_M2, Floats
-from assembly.base.mark_ranges import joined_ranges, short_mark
+from assembly.base.mark_ranges import joined_ranges
 
 FACADE_HEADER = (
     "pattern", "kind", "quantity", "marks", "mirror_of", "length_mm", "width_mm", "thickness_mm", "left_edge_mm",
@@ -183,7 +185,8 @@ def _title_lines(pattern: StripPattern, design: Design, title: str) -> tuple[str
 def strip_drawing(pattern: StripPattern, design: Design, title: str) -> Drawing:
     """Return the flat pattern of a strip as a drawing, 1:1 in mm: x along the ribs from the foot, seen from outside."""
     flat = pattern.flat
-    names = [f"G-{number:02d}" for number in strip_neighbours(design, parse_mark(pattern.strips[0].mark).index)]
+    neighbours = strip_neighbours(design, parse_mark(pattern.strips[0].mark).index)
+    names = [short_mark(curve_mark(1, CurveId("G", number))) for number in neighbours]
     middle, below = flat.length / 2.0, float(flat.outline[:, 1].min())
     above = float(flat.outline[:, 1].max())
     items: list[Item] = [Polyline(OUTLINE, _points(flat.outline))]

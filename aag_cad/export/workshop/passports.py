@@ -10,7 +10,7 @@ import numpy as np
 
 from aag_cad.files import csv_text, write_bytes, write_text
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import shell_of
+from aag_cad.parts.marks import short_mark
 from aag_cad.parts.model import Gridshell, Hole, Plank, Timber
 from aag_cad.shop.passports import (
     REUSE_HEADER,
@@ -181,9 +181,8 @@ def _facts(held: Passport) -> list[tuple[str, str]]:
 def _holes(held: Passport) -> list[dict[str, Any]]:
     """Return the holes by joint, in the order of a tape along the plank."""
     listed: list[dict[str, Any]] = []
-    shell = f"{shell_of(held.mark)}-"
     for hole in held.holes:
-        joint = hole.joint.removeprefix(shell)
+        joint = short_mark(hole.joint)
         slot = f" x {hole.diameter + hole.slot:g}" if hole.slot else ""
         bore = f"{hole.use} ⌀{hole.diameter:g}{slot}"
         if not listed or (listed[-1]["joint"], listed[-1]["bore"]) != (joint, bore):
