@@ -15,6 +15,7 @@ from aag_cad.network.ridge import ridge_distance
 from aag_cad.parts.clearance import Obstacle, is_free, placed_points
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt
 from aag_cad.parts.forming import formed_points
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import Mark, parse_mark, part_mark, ridge_name, shell_of
 from aag_cad.parts.members import Drilling, curve_mark
 from aag_cad.parts.model import Blade, Bolt, FoldedPlate, Frame, Gridshell, Joint, PlateHole
@@ -219,7 +220,7 @@ def ridge_gaps(gridshell: Gridshell) -> tuple[float, float] | None:
     if not gridshell.blades:
         return None
     first = gridshell.joints[0].members[0]
-    plank = next(plank for plank in gridshell.shells[0].planks if plank.mark == first)
+    plank = index_of(gridshell).planks[first]
     stations = np.array([place.station for place in plank.joints if not shell_of(place.joint)])
     half = plank.blank.section.width / 2.0
     edges = [

@@ -17,6 +17,7 @@ from aag_cad.parts.model import (
     Plank,
     Screw,
     Shell,
+    Strap,
     Stud,
     all_joints,
     all_parts,
@@ -40,12 +41,18 @@ def _by_mark(items: Iterable[_T]) -> dict[str, _T]:
 class Index:
     """Parts, beams and joints by mark, each in the order of the model; made by ``index_of``."""
 
-    listed_parts: tuple[Part, ...]
+    listed_shells: tuple[Shell, ...]
     listed_beams: tuple[Beam, ...]
+    listed_parts: tuple[Part, ...]
     listed_joints: tuple[Joint, ...]
 
     def _of(self, kind: type[_T]) -> dict[str, _T]:
         return _by_mark(part for part in self.listed_parts if isinstance(part, kind))
+
+    @cached_property
+    def shells(self) -> dict[str, Shell]:
+        """The shells of a gridshell."""
+        return _by_mark(self.listed_shells)
 
     @cached_property
     def parts(self) -> dict[str, Part]:
@@ -78,6 +85,11 @@ class Index:
         return self._of(Screw)
 
     @cached_property
+    def straps(self) -> dict[str, Strap]:
+        """The straps."""
+        return self._of(Strap)
+
+    @cached_property
     def beams(self) -> dict[str, Beam]:
         """The coupled beams."""
         return _by_mark(self.listed_beams)
@@ -97,14 +109,25 @@ class Index:
         return {mark: tuple(joints) for mark, joints in found.items()}
 
     @cached_property
+    def joint_of_fastener(self) -> dict[str, Joint]:
+        """The joint that a fastener belongs to, by the fastener's mark."""
+        return {fastener: joint for joint in self.listed_joints for fastener in joint.fasteners}
+
+    @cached_property
     def stations(self) -> dict[tuple[str, str], float]:
-        """The station of a joint on a plank, by the marks of plank and joint, mm."""
-        return {(plank.mark, place.joint): place.station for plank in self.planks.values() for place in plank.joints}
+        """The station of a joint on a plank or a beam, by the marks of both, mm."""
+        members: tuple[Beam | Plank, ...] = (*self.planks.values(), *self.beams.values())
+        return {(member.mark, place.joint): place.station for member in members for place in member.joints}
 
     @cached_property
     def unit_of(self) -> dict[str, str]:
         """What a plank is laid as, by its mark: its coupled beam, or itself."""
         return {plank.mark: plank.beam or plank.mark for plank in self.planks.values()}
+
+    @cached_property
+    def units(self) -> dict[str, Beam | Plank]:
+        """What is laid in one piece: the coupled beams, and the planks of no beam."""
+        return {**self.beams, **{mark: plank for mark, plank in self.planks.items() if not plank.beam}}
 
     @cached_property
     def beam_of(self) -> dict[str, str]:
@@ -129,10 +152,11 @@ def index_of(whole: Shell | Gridshell) -> Index:
     """Return what a shell, or a whole gridshell, holds by mark: the same index at every call for the same object."""
     if id(whole) not in _KEPT:
         if isinstance(whole, Shell):
-            parts, beams, joints = shell_parts(whole), whole.beams, whole.joints
+            # Its own index does not hold a shell, which else would live as long as the index.
+            index = Index((), whole.beams, shell_parts(whole), whole.joints)
         else:
-            parts, joints = all_parts(whole), all_joints(whole)
             beams = tuple(beam for shell in whole.shells for beam in shell.beams)
-        _KEPT[id(whole)] = Index(parts, beams, joints)
+            index = Index(whole.shells, beams, all_parts(whole), all_joints(whole))
+        _KEPT[id(whole)] = index
         weakref.finalize(whole, _KEPT.pop, id(whole))
     return _KEPT[id(whole)]

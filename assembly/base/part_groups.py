@@ -53,30 +53,25 @@ def _refuse_strays(shell: Shell, kit: Kit) -> None:
 
 def driven_from_outside(shell: Shell) -> set[str]:
     """Return the screws whose heads lie on the outer side."""
-    normals = {mark: np.array(joint.normal) for joint in shell.joints for mark in joint.fasteners}
-    return {
-        screw.mark
-        for screw in shell.screws
-        if screw.mark in normals and float(np.array(screw.frame.z) @ normals[screw.mark]) < 0.0
-    }
+    joints = index_of(shell).joint_of_fastener
+    held = ((screw, joints[screw.mark]) for screw in shell.screws if screw.mark in joints)
+    return {screw.mark for screw, joint in held if float(np.array(screw.frame.z) @ np.array(joint.normal)) < 0.0}
 
 
 def _homes(shell: Shell, block_beam: dict[str, str]) -> dict[tuple[Group, str], list[str]]:
     """Return the fasteners by what they are added with: a group of the kit and the mark of a piece in it."""
-    families = {plank.mark: plank.family for plank in shell.planks}
-    bolts, studs = index_of(shell).bolts.keys(), index_of(shell).studs.keys()
-    outer = driven_from_outside(shell)
-    straps = {strap.mark for strap in shell.straps}
+    index, outer = index_of(shell), driven_from_outside(shell)
 
     def home(joint: Joint, fastener: str) -> tuple[Group, str] | None:
         if joint.kind in _LATER:
             return _LATER[joint.kind], ""
-        hub = next((mark for mark in joint.members if mark in studs or mark in block_beam), "")
-        if hub in studs:
+        hub = next((mark for mark in joint.members if mark in index.studs or mark in block_beam), "")
+        if hub in index.studs:
             return "studs", hub
-        if hub and fastener in bolts:
+        if hub and fastener in index.bolts:
             return "beams", block_beam[hub]
-        flat = sorted((families[mark], mark) for mark in joint.members if families.get(mark) in ("E", "G"))
+        planks = (index.planks[mark] for mark in joint.members if mark in index.planks)
+        flat = sorted((plank.family, plank.mark) for plank in planks if not plank.upright)
         if not flat:
             return None
         family, mark = flat[0]
@@ -84,7 +79,7 @@ def _homes(shell: Shell, block_beam: dict[str, str]) -> dict[tuple[Group, str], 
 
     homes: dict[tuple[Group, str], list[str]] = defaultdict(list)
     for joint in shell.joints:
-        for fastener in (*(mark for mark in joint.members if mark in straps), *joint.fasteners):
+        for fastener in (*(mark for mark in joint.members if mark in index.straps), *joint.fasteners):
             found = home(joint, fastener)
             if found is not None:
                 homes[found].append(fastener)

@@ -72,11 +72,11 @@ def part_rows(
 
 
 def _beam_table(shell: Shell, step: Step, weights: Weights, language: Language) -> dict[str, Any]:
-    lengths = {plank.mark: plank.blank.length for plank in shell.planks}
+    planks = index_of(shell).planks
     beams = [beam for beam in shell.beams if set(beam.planks) <= set(step.marks)]
     rows = []
     for beam in beams:
-        left, right = (lengths[mark] for mark in beam.planks)
+        left, right = (planks[mark].blank.length for mark in beam.planks)
         blocks = [place.joint for place in beam.joints if parse_mark(place.joint).family == "K"]
         studs = [place.joint for place in beam.joints if parse_mark(place.joint).family == "N"]
         rows.append([
@@ -128,10 +128,9 @@ def _feet_table(gridshell: Gridshell, language: Language) -> dict[str, Any]:
 
 
 def _bolt_table(shell: Shell, language: Language) -> dict[str, Any]:
-    kinds = {joint.mark: joint.kind for joint in shell.joints}
     groups: dict[tuple[str, str], int] = defaultdict(int)
     for bolt in shell.bolts:
-        kind = kinds[joint_of(bolt.mark)]
+        kind = index_of(shell).joint_of_fastener[bolt.mark].kind
         if kind in _TIGHTENED:
             groups[part_name(bolt, language), say(language, f"cards.bolts.{kind}")] += 1
     return _table(language, "bolts", [[where, name, str(n)] for (name, where), n in groups.items()])
@@ -139,7 +138,7 @@ def _bolt_table(shell: Shell, language: Language) -> dict[str, Any]:
 
 def step_table(gridshell: Gridshell, plan: Plan, step: Step, weights: Weights) -> dict[str, Any] | None:
     """Return the table of a step's card as head and rows of text, or None."""
-    shells, language = {shell.mark: shell for shell in gridshell.shells}, plan.language
+    shells, language = index_of(gridshell).shells, plan.language
     match step.phase:
         case "prefabricate":
             return _beam_table(shells[step.shell], step, weights, language)

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from html import escape
 from typing import Any
 
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import joint_of
 from aag_cad.parts.model import Gridshell
 from assembly.base.steps import Phase, Plan
@@ -85,14 +86,13 @@ def _shown(data: Mapping[str, Any]) -> list[str]:
 
 def handled_marks(plan: Plan, gridshell: Gridshell) -> list[tuple[int, str, tuple[str, ...]]]:
     """Return for each step its number, title and what it handles: its parts, beams, shells, and planks it fastens."""
-    beams = {plank.mark: plank.beam or plank.mark for shell in gridshell.shells for plank in shell.planks}
-    listed = (*(joint for shell in gridshell.shells for joint in shell.joints), *gridshell.joints)
-    members = {joint.mark: [beams[mark] for mark in joint.members if mark in beams] for joint in listed}
+    index = index_of(gridshell)
     found = []
     for step in plan.steps:
         own = set(step.marks)
         joints = {joint_of(mark) for mark in own} if step.phase in _FASTENED else set[str]()
-        fastened = {mark for joint in joints for mark in members.get(joint, ())}
+        members = (mark for joint in joints if joint in index.joints for mark in index.joints[joint].members)
+        fastened = {index.unit_of[mark] for mark in members if mark in index.unit_of}
         found.append((step.number, step.title, tuple(sorted({*own, *step.assemblies, *fastened}))))
     return found
 

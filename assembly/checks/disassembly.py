@@ -33,7 +33,7 @@ def _forced(plan: Plan) -> dict[str, set[str]]:
 def _once(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
     """Yield what does not leave once: parts, beams off the flat shell, shells off their feet, planks measured."""
     planks = index_of(gridshell).planks.keys()
-    shells = {shell.mark for shell in gridshell.shells}
+    shells = index_of(gridshell).shells.keys()
     beams = index_of(gridshell).beams.keys()
     wanted = (
         ("leaves", index_of(gridshell).parts.keys(), Counter(m for step in plan.steps for m in step.marks)),
@@ -67,8 +67,8 @@ def _places(plan: Plan, gridshell: Gridshell) -> tuple[dict[str, _Place], dict[s
         if step.phase == "take off beams"
         for i, mark in enumerate(step.assemblies)
     }
-    planks = [plank for shell in gridshell.shells for plank in shell.planks]
-    lying = {plank.mark: off.get(plank.beam) or leaves.get(plank.mark) for plank in planks}
+    planks = index_of(gridshell).planks
+    lying = {mark: off.get(plank.beam) or leaves.get(mark) for mark, plank in planks.items()}
     return leaves, {mark: place for mark, place in lying.items() if place is not None}
 
 
@@ -100,15 +100,14 @@ def _fastened(gridshell: Gridshell, leaves: dict[str, _Place], lying: dict[str, 
             if fastener in leaves and then is not None:
                 yield f"{fastener} holds {member}", leaves[fastener], then
     for shell in gridshell.shells:
-        bolts = index_of(shell).bolts
-        planks = index_of(shell).planks
-        layer = {beam.mark: beam.layer for beam in shell.beams}
+        index = index_of(shell)
         for joint in (joint for joint in shell.joints if joint.kind == "AA"):
-            beams = sorted({planks[m].beam for m in joint.members if m in planks}, key=lambda mark: layer[mark])
+            listed = {index.planks[m].beam for m in joint.members if m in index.planks}
+            beams = sorted(listed, key=lambda mark: index.beams[mark].layer)
             for fastener in (mark for mark in joint.fasteners if mark in leaves and joint.mark in leaves):
                 yield f"{fastener} holds {joint.mark}", leaves[fastener], leaves[joint.mark]
-                beam = _nearest_beam(shell, joint, bolts[fastener])
-                for plank in next(b for b in shell.beams if b.mark == beam).planks:
+                beam = _nearest_beam(shell, joint, index.bolts[fastener])
+                for plank in index.beams[beam].planks:
                     place = lying if beam != beams[0] else leaves
                     if plank in place:
                         yield f"{fastener} holds {plank} of {beam}", leaves[fastener], place[plank]
@@ -160,7 +159,7 @@ def _hanging(plan: Plan, shell: Shell, leaves: dict[str, _Place]) -> Iterator[_R
     yield f"{shell.mark} is off its feet before it hangs", lift, hang
     yield f"{shell.mark} hangs before it is lowered", hang, lower
     bracing = index_of(shell).screws.keys() - covering
-    bracing |= {plank.mark for plank in shell.planks if plank.family == "E"} | {strap.mark for strap in shell.straps}
+    bracing |= {plank.mark for plank in shell.planks if plank.family == "E"} | index_of(shell).straps.keys()
     for mark in sorted(bracing & set(leaves)):
         yield f"{mark} keeps the shape of {shell.mark} until it hangs", hang, leaves[mark]
         yield f"{mark} must be out before the nodes turn", leaves[mark], lower
@@ -188,14 +187,14 @@ def _surrounded(corners: Floats, point: Floats) -> bool:
 
 def _propped(plan: Plan, shell: Shell) -> Iterator[str]:
     """Yield the steps that let go of what holds a shell while its centre of gravity is not over its feet and props."""
-    places = {joint.mark: joint.point for joint in shell.joints}
+    joints = index_of(shell).joints
     feet = {joint.mark for joint in shell.joints if joint.kind == "foot"}
     lengths = np.array([plank.curve.length for plank in shell.planks])
     middles = np.array([plank.curve.points.mean(axis=0) for plank in shell.planks])
     centre = lengths @ middles / lengths.sum()
     for step in (step for phase in _LETTING_GO for step in _steps(plan, phase, shell.mark)):
-        under = feet | {mark for mark in step.props if mark in places}
-        if not _surrounded(np.array([places[mark] for mark in sorted(under)])[:, :2], centre[:2]):
+        under = feet | {mark for mark in step.props if mark in joints}
+        if not _surrounded(np.array([joints[mark].point for mark in sorted(under)])[:, :2], centre[:2]):
             yield f"{shell.mark}: step {step.id} lets go of it, but its centre is not over its feet and props"
 
 

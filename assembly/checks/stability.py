@@ -136,14 +136,13 @@ def prop_problems(plan: Plan, order: LockingOrder) -> Iterator[str]:
 
 def _fixed_in(plan: Plan, gridshell: Gridshell, order: LockingOrder) -> dict[str, Step]:
     """Return the step in which each flat plank of a shell gets its screws into blocks."""
-    shell = next(shell for shell in gridshell.shells if shell.mark == order.shell)
-    screws = index_of(shell).screws.keys()
-    members = {mark: joint.members for joint in shell.joints for mark in joint.fasteners if joint.kind != "cover"}
-    flat = {plank.mark for plank in shell.planks if not plank.upright}
+    index = index_of(index_of(gridshell).shells[order.shell])
     found: dict[str, Step] = {}
     for step in plan.steps:
-        for screw in (mark for mark in step.marks if mark in screws and mark in members):
-            found |= {mark: step for mark in members[screw] if mark in flat}
+        for screw in (mark for mark in step.marks if mark in index.screws and mark in index.joint_of_fastener):
+            joint = index.joint_of_fastener[screw]
+            flat = (mark for mark in joint.members if mark in index.planks and not index.planks[mark].upright)
+            found |= dict.fromkeys(flat if joint.kind != "cover" else (), step)
     return found
 
 

@@ -57,8 +57,7 @@ def _bolt(y: float, bolt: Bolt) -> str:
 def node_section_svg(shell: Shell, *, language: Language = "en") -> str:
     """Return the section through a crossing of two beams, drawn as if both ran the same way, at 1 : 5."""
     stud, plank = shell.studs[0], next(plank for plank in shell.planks if plank.upright)
-    bolts = index_of(shell).bolts
-    bolt = next(bolts[joint.fasteners[0]] for joint in shell.joints if joint.mark == stud.mark)
+    bolt = index_of(shell).bolts[index_of(shell).joints[stud.mark].fasteners[0]]
     section = plank.blank.section
     centre, long, flat = _UNIT * stud.length / 2.0 + 20.0, _UNIT * stud.length, _UNIT * stud.across_flats
     items = [group([rectangle(_AXIS - flat / 2.0, centre - long / 2.0, flat, long)], _OPEN)]

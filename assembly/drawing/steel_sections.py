@@ -117,7 +117,7 @@ def foot_section_svg(shell: Shell, shoe: Shoe, named: bool, *, language: Languag
 
     ``named`` says whether words name its parts.
     """
-    joint = next(joint for joint in shell.joints if joint.mark == shoe.mark)
+    joint = index_of(shell).joints[shoe.mark]
     stands = next(joint for joint in shell.joints if joint.kind == "footing" and shoe.mark in joint.members)
     rod = next(rod for rod in shell.rods if rod.mark in stands.fasteners)
     footing = next(footing for footing in shell.footings if footing.mark in stands.members)
@@ -152,7 +152,7 @@ def foot_section_svg(shell: Shell, shoe: Shoe, named: bool, *, language: Languag
 
 def strap_section_svg(shell: Shell, strap: Strap, *, language: Language = "en") -> str:
     """Return the section along a strap: end of the geodesic, edge plank, bolts; outside above, at 1 : 6."""
-    joint = next(joint for joint in shell.joints if joint.mark == strap.mark)
+    joint = index_of(shell).joints[strap.mark]
     geodesic, edge = _members(shell, joint)
     along = frames_at(strap.curve, np.array([strap.curve.length / 2.0])).tangent[0]
     normal = np.array(joint.normal)
@@ -178,7 +178,7 @@ def strap_section_svg(shell: Shell, strap: Strap, *, language: Language = "en") 
 
 def blade_section_svg(gridshell: Gridshell, blade: Blade, *, language: Language = "en") -> str:
     """Return the section across a ridge at a blade, at 1 : 6."""
-    joint = next(joint for joint in gridshell.joints if joint.mark == blade.mark)
+    joint = index_of(gridshell).joints[blade.mark]
     planks = {plank.mark: (plank, shell.placement) for shell in gridshell.shells for plank in shell.planks}
     flat, bolts = _in_frame(blade.frame), [bolt for bolt in gridshell.bolts if bolt.mark in joint.fasteners]
     marks = [mark for mark in joint.members if mark in planks]

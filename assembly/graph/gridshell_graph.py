@@ -106,21 +106,20 @@ def _hub(joint: Joint) -> str:
     return next((mark for mark in joint.members if parse_mark(mark).family == "K"), "")
 
 
-def _ties(joint: Joint, beams: Mapping[str, str]) -> Iterator[tuple[str, str, EdgeKind]]:
+def _ties(joint: Joint, planks: Mapping[str, Plank]) -> Iterator[tuple[str, str, EdgeKind]]:
     """Yield the pairs of parts that a joint ties together, and how.
 
-    ``beams`` gives the coupled beam of every plank, or "". A stud, coupling block, strap, shoe, concrete block or blade
-    is the hub that the others are tied to. Without one all members are tied pairwise, but for planks, whose crossings
-    are edges of their own, and the fasteners to the first member.
+    A stud, coupling block, strap, shoe, concrete block or blade is the hub that the others are tied to. Without one all
+    members are tied pairwise, but for planks, whose crossings are edges of their own, and the fasteners to the first.
     """
     usual, hub = _BY_JOINT[joint.kind], _hub(joint)
     for mark in joint.members:
         if hub and mark != hub:
-            on_block = joint.kind in ("AG", "boundary") and beams.get(mark)
+            on_block = joint.kind in ("AG", "boundary") and mark in planks and planks[mark].beam
             yield hub, mark, "coupled" if on_block else usual
     if not hub:
         for a, b in combinations(joint.members, 2):
-            if a not in beams or b not in beams:
+            if a not in planks or b not in planks:
                 yield a, b, usual
     for fastener in joint.fasteners:
         yield hub or joint.members[0], fastener, _BY_FASTENER[parse_mark(fastener).letter]
@@ -165,19 +164,16 @@ def _add_planks(graph: "nx.MultiGraph[str]", shell: Shell, min_radius: float) ->
         graph.add_edge(a, b, key=edge["joint"], **edge)
 
 
-def _add_ties(graph: "nx.MultiGraph[str]", joints: tuple[Joint, ...], beams: Mapping[str, str]) -> None:
+def _add_ties(graph: "nx.MultiGraph[str]", joints: tuple[Joint, ...], planks: Mapping[str, Plank]) -> None:
     for joint in joints:
-        for a, b, how in _ties(joint, beams):
+        for a, b, how in _ties(joint, planks):
             graph.add_edge(a, b, key=joint.mark, **JointEdge(kind=how, joint=joint.mark, joint_kind=joint.kind))
 
 
 def _add_parts(graph: "nx.MultiGraph[str]", gridshell: Gridshell, parts: tuple[Part, ...], shell: Shell | None) -> None:
-    homes = index_of(shell).beam_of if shell else {}
-    layers: dict[str, int] = {}
-    if shell:
-        of_beam = {beam.mark: beam.layer for beam in shell.beams}
-        layers |= {plank.mark: plank.layer for plank in shell.planks}
-        layers |= {block.mark: of_beam[homes[block.mark]] for block in shell.blocks if block.mark in homes}
+    index = index_of(gridshell)
+    layers = {mark: index.beams[beam].layer for mark, beam in index.beam_of.items() if mark in index.blocks}
+    layers |= {mark: plank.layer for mark, plank in index.planks.items()}
     points = np.array([part_point(part) for part in parts]).reshape(-1, 3)
     for part, position in zip(parts, _placed(points, shell.placement if shell else UNMOVED), strict=True):
         graph.add_node(
@@ -186,7 +182,7 @@ def _add_parts(graph: "nx.MultiGraph[str]", gridshell: Gridshell, parts: tuple[P
                 kind=kind(part),
                 family=parse_mark(part.mark).family,
                 shell=shell_of(part.mark),
-                beam=homes.get(part.mark, ""),
+                beam=index.beam_of.get(part.mark, ""),
                 layer=layers.get(part.mark),
                 mass_kg=mass(part, gridshell.timber),
                 length_mm=sizes(part)[0],
@@ -206,7 +202,7 @@ def assembly_graph(gridshell: Gridshell) -> "nx.MultiGraph[str]":
     _add_parts(graph, gridshell, ridge_parts(gridshell), None)
     for shell in gridshell.shells:
         _add_planks(graph, shell, gridshell.timber.min_bending_radius)
-        _add_ties(graph, shell.joints, {plank.mark: plank.beam for plank in shell.planks})
+        _add_ties(graph, shell.joints, index_of(shell).planks)
     _add_ties(graph, gridshell.joints, {})
     assert len(graph) == len(all_parts(gridshell))
     return graph

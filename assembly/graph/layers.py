@@ -9,7 +9,7 @@ import networkx as nx
 import numpy as np
 
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Joint, Plank, Shell
+from aag_cad.parts.model import Joint, Shell
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
 from assembly.graph.circles import circle_links, knots, part_of, relations
@@ -26,11 +26,6 @@ class Level:
     mark: str
 
 
-def lying_unit(plank: Plank) -> str:
-    """Return the mark of what is laid as one piece: the coupled beam of a sibling plank, or the plank itself."""
-    return plank.beam or plank.mark
-
-
 def _points_at_joints(shell: Shell) -> dict[tuple[str, str], Floats]:
     """Return the point (3,) of each plank's centre line at each of its joints, by plank and joint mark."""
     points: dict[tuple[str, str], Floats] = {}
@@ -44,12 +39,11 @@ def _points_at_joints(shell: Shell) -> dict[tuple[str, str], Floats]:
 def crossing_levels(shell: Shell) -> dict[str, tuple[Level, ...]]:
     """Return planks, studs and blocks of every joint of a shell from the lowest to the highest along its normal."""
     points = _points_at_joints(shell)
-    studs = {stud.mark: np.array(stud.frame.origin) for stud in shell.studs}
-    hubs = studs | {block.mark: np.array(block.frame.origin) for block in shell.blocks}
+    hubs = index_of(shell).studs | index_of(shell).blocks
 
     def levels(joint: Joint) -> Iterator[Level]:
         for mark in joint.members:
-            point = points.get((mark, joint.mark), hubs.get(mark))
+            point = np.array(hubs[mark].frame.origin) if mark in hubs else points.get((mark, joint.mark))
             if point is not None:
                 yield Level(float((point - np.array(joint.point)) @ np.array(joint.normal)), mark)
 

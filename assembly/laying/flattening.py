@@ -17,7 +17,7 @@ from scipy.sparse.linalg import splu
 from aag_cad.findings import Finding, Severity
 from aag_cad.language import text
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Plank, Shell, Timber
+from aag_cad.parts.model import Shell, Timber
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
 from assembly.laying.net import Net, Ray, is_ring, shell_net
@@ -171,7 +171,7 @@ def outline_of(member: FlatMember) -> Floats:
 
 def _geodesics(shell: Shell, net: Net, at: Floats) -> tuple[list[FlatMember], dict[str, Floats], float]:
     """Return the geodesics on the floor, their foot joints, and the largest offset of a crossing."""
-    planks: dict[str, Plank] = index_of(shell).planks
+    planks = index_of(shell).planks
     feet = {joint.mark for joint in shell.joints if joint.kind == "foot"}
     members: list[FlatMember] = []
     foot: dict[str, Floats] = {}
@@ -193,13 +193,14 @@ def _geodesics(shell: Shell, net: Net, at: Floats) -> tuple[list[FlatMember], di
 
 def _beams(shell: Shell, net: Net, at: Floats) -> list[FlatMember]:
     width = beam_width(shell)
-    families = {beam.mark: beam.family for beam in shell.beams}
+    beams = index_of(shell).beams
     members = []
     for chain in net.chains:
         named = {place: joint for joint, place in chain.joints.items()}
         joints = tuple(named.get(i, "") for i in range(len(chain.points)))
         points = at[chain.points]
-        members.append(FlatMember(chain.mark, families[chain.mark], chain.layer, width, chain.stations, points, joints))
+        family = beams[chain.mark].family
+        members.append(FlatMember(chain.mark, family, chain.layer, width, chain.stations, points, joints))
     return members
 
 
@@ -243,7 +244,7 @@ def _most_bent(net: Net, excess: Floats, free: float) -> tuple[float, float, str
 def _free_turn(shell: Shell) -> float:
     """Return by how much the play of bolts in their holes lets the planks of a beam turn either way, radians."""
     beam = shell.beams[0]
-    plank = next(plank for plank in shell.planks if plank.mark == beam.planks[0])
+    plank = index_of(shell).planks[beam.planks[0]]
     play = [hole.diameter for hole in plank.blank.holes if hole.use == "bolt"]
     if not play or not shell.bolts:
         return 0.0

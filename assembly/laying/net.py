@@ -189,13 +189,14 @@ def _scissor(joint: Joint, below: str, above: str, chains: dict[str, Chain], bea
     )
 
 
-def _crossed(shell: Shell, of_plank: dict[str, str]) -> dict[str, tuple[str, str]]:
+def _crossed(shell: Shell) -> dict[str, tuple[str, str]]:
     """Return for each joint of two beams, or beam and geodesic, the marks of both, the lower one first."""
-    layers = {plank.mark: plank.layer for plank in shell.planks}
+    index = index_of(shell)
     found: dict[str, tuple[str, str]] = {}
     for joint in shell.joints:
         if joint.kind in ("AA", "AG", "boundary"):
-            meeting = sorted((layers[mark], of_plank[mark]) for mark in joint.members if mark in of_plank)
+            planks = (index.planks[mark] for mark in joint.members if mark in index.planks)
+            meeting = sorted((plank.layer, index.unit_of[plank.mark]) for plank in planks if plank.family != "E")
             marks = tuple(dict.fromkeys(mark for _, mark in meeting))
             if len(marks) == 2:
                 found[joint.mark] = (marks[0], marks[1])
@@ -205,7 +206,6 @@ def _crossed(shell: Shell, of_plank: dict[str, str]) -> dict[str, tuple[str, str
 def shell_net(shell: Shell) -> Net:
     """Return the net of a shell; PlanError if it has no beams that cross on studs."""
     geodesics = [plank for plank in shell.planks if plank.family == "G"]
-    of_plank = {mark: beam.mark for beam in shell.beams for mark in beam.planks} | {g.mark: g.mark for g in geodesics}
     members: list[Beam | Plank] = [*shell.beams, *geodesics]
     begin, near = _laid_out(shell, members, is_ring(shell))
     places = {member.mark: _stations(member)[1] for member in members}
@@ -214,7 +214,7 @@ def shell_net(shell: Shell) -> Net:
         a, b = (begin[mark][places[mark][joint]] for mark in marks)
         return float(np.linalg.norm(a - b))
 
-    pairs = _crossed(shell, of_plank)
+    pairs = _crossed(shell)
     left_open = {joint for joint, marks in pairs.items() if apart(joint, marks) > near}
     studs = [joint for joint in shell.joints if joint.kind == "AA" and joint.mark in pairs]
     if not studs:

@@ -19,7 +19,7 @@ from assembly.base.errors import PlanError
 from assembly.base.shell_axes import shell_view, sweep_direction
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import Interlacing, Slide, interlacing, refuse_left_out
-from assembly.graph.layers import layer_precedence, lying_unit
+from assembly.graph.layers import layer_precedence
 from assembly.graph.laying_units import EDGE_FAMILY, Unit, units_of
 from assembly.laying.footpath import shorter_path
 from assembly.laying.walking import (
@@ -250,7 +250,7 @@ def flat_order(shell: Shell, woven: Interlacing | None = None) -> FlatOrder:
     sorts: dict[str, _Sort] = {}
     lengths: dict[str, float] = defaultdict(float)
     for plank in (plank for plank in shell.planks if plank.family != EDGE_FAMILY):
-        unit, long = lying_unit(plank), plank.curve.length
+        unit, long = plank.beam or plank.mark, plank.curve.length
         ends[unit].append(plank.curve.point_spline(np.array([0.0, long])) @ axes.T)
         sorts[unit] = (shell.mark, plank.layer, plank.family)
         lengths[unit] = max(lengths[unit], long)

@@ -138,7 +138,7 @@ def _standing(plan: Plan, gridshell: Gridshell, down: bool) -> dict[str, frozens
 
 def ridge_planks(gridshell: Gridshell, pair: Sequence[str]) -> tuple[str, ...]:
     """Return the edge planks of two shells that face each other, none where either has none."""
-    shells = {shell.mark: shell for shell in gridshell.shells}
+    shells = index_of(gridshell).shells
 
     def middles(mark: str) -> dict[str, Floats]:
         matrix = frame_matrix(shells[mark].placement)

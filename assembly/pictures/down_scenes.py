@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import joint_of, short_mark
 from aag_cad.parts.model import Plank, Shell
 from assembly.base.steps import Step
@@ -31,7 +32,7 @@ def _beams_of(shell: Shell, step: Step) -> tuple[str, ...]:
     if step.phase == "unbolt":
         return tuple(beam.mark for beam in shell.beams if set(beam.planks) <= set(step.marks))
     levels = {plank.beam: plank.layer for plank in shell.planks if plank.beam}
-    studs = {stud.mark for stud in shell.studs if stud.mark in step.marks}
+    studs = index_of(shell).studs.keys() & step.marks
     held = [(beam.mark, {place.joint for place in beam.joints} & studs) for beam in shell.beams]
     lowest = min((levels[mark] for mark, found in held if found), default=0)
     return tuple(mark for mark, found in held if found and levels[mark] == lowest)
@@ -99,7 +100,7 @@ def down_scene(shell: Shell, step: Step, there: frozenset[str], outer: set[str])
             unbolted = tuple(joint for joint in _joints(step, [b.mark for b in shell.bolts]) if joint in studs)
             return Scene(there=there, new=_planks_of(shell, units), names=_short(units), starts=units, dots=unbolted)
         case "passports":
-            units = tuple(dict.fromkeys(plank.beam or plank.mark for plank in shell.planks))
+            units = tuple(dict.fromkeys(index_of(shell).unit_of.values()))
             return Scene(new=[plank.mark for plank in shell.planks], names=_short(units), starts=units)
         case _:
             beams = _beams_of(shell, step)

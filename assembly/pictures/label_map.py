@@ -48,14 +48,13 @@ def _triangle(line: Floats) -> Floats:
 
 def _lines(shell: Shell, outline: Outline) -> dict[str, Floats]:
     """Return the lines of beams and flat planks from their start, by mark."""
-    flat = [plank.mark for plank in shell.planks if not plank.beam]
-    return {mark: outline.lines[mark] for mark in (*(beam.mark for beam in shell.beams), *flat)}
+    return {mark: outline.lines[mark] for mark in index_of(shell).units}
 
 
 def _plank_items(shell: Shell, outline: Outline) -> Iterator[str]:
-    families = {plank.mark: plank.family for plank in shell.planks}
+    planks = index_of(shell).planks
     for mark, points in outline.planks.items():
-        yield group([path(points)], _PLANKS.get(families[mark], _EDGE))
+        yield group([path(points)], _PLANKS.get(planks[mark].family, _EDGE))
 
 
 def _names(lines: dict[str, Floats], sheet: Box, taken: list[Box]) -> str:

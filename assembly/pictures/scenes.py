@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import in_other_shell, is_in_shell, joint_of, parse_mark, shell_of, short_mark
 from aag_cad.parts.model import Shell
 from assembly.base.part_groups import driven_from_outside
@@ -57,8 +58,7 @@ def _joints_of(step: Step, letters: str = "BW") -> tuple[str, ...]:
 
 def _fixing_scene(shell: Shell, step: Step, there: frozenset[str], single: Sequence[str]) -> Scene:
     """Return the screws of the geodesics of a step: dots where they are driven from outside, rings from inside."""
-    members = {mark: joint.members for joint in shell.joints for mark in joint.fasteners}
-    held = {member for mark in step.marks for member in members[mark]}
+    held = {member for mark in step.marks for member in index_of(shell).joint_of_fastener[mark].members}
     fixed = [mark for mark in single if mark in held]
     outer = driven_from_outside(shell)
     dots = tuple(dict.fromkeys(joint_of(mark) for mark in step.marks if mark in outer))
@@ -138,14 +138,14 @@ def _twinned(sheets: Sheets, step: Step) -> tuple[Shell, Step, frozenset[str]]:
     """Return the shell whose picture serves for a step, the step with its marks, and what is there before it."""
     home = home_shell(step)
     twin = sheets.twins[home]
-    shell = next(shell for shell in sheets.gridshell.shells if shell.mark == twin)
+    shell = index_of(sheets.gridshell).shells[twin]
     there = {in_other_shell(mark, home, twin) for mark in sheets.before[step.id] if is_in_shell(mark, home)}
     return shell, twin_step(step, home, twin), frozenset(there)
 
 
 def _segment_pictures(sheets: Sheets, step: Step, segmentation: Segmentation) -> tuple[str, ...]:
     """Return the pictures of a step with segments of a shell: the shell square on, and its plan where it stands."""
-    shell = next(shell for shell in sheets.gridshell.shells if shell.mark == step.assemblies[0])
+    shell = index_of(sheets.gridshell).shells[step.assemblies[0]]
     outline = cut_outline(shell_outline(shell, PAGE_WIDTH, MARGIN), shell, segmentation)
     picture = scene_svg(outline, segment_scene(shell, step, segmentation, sheets.stood[step.id]))
     return (picture, *(foot_sections(shell, sheets.language) if step.phase == "stand" and step.marks else ()))
@@ -191,7 +191,7 @@ def step_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
 
 def phase_svg(sheets: Sheets, plan: Plan, step: Step) -> str:
     """Return a small picture without words of the first shell as a step leaves it."""
-    shell = next(shell for shell in sheets.gridshell.shells if shell.mark == step.shell)
+    shell = index_of(sheets.gridshell).shells[step.shell]
     scene = _shell_scene(shell, step, sheets.before[step.id], sheets.slides)
     same = [s for s in plan.steps if s.shell == step.shell and s.phase == step.phase]
     scenes = [_shell_scene(shell, s, frozenset(), sheets.slides) for s in same]

@@ -88,7 +88,7 @@ def _place(outline: Outline, shell: Shell, splice: Splice) -> Floats:
     """Return where a splice is on the sheet (2,)."""
     if splice.joint:
         return outline.points[splice.joint]
-    plank = next(plank for plank in shell.planks if plank.mark == splice.member)
+    plank = index_of(shell).planks[splice.member]
     share = splice.cuts[0].station / plank.blank.length
     return np.asarray(places_along(outline.lines[plank.mark], (share,))[0])
 
@@ -236,7 +236,7 @@ def segment_svg(gridshell: Gridshell, segmentation: Segmentation, segment: Segme
     its other cut ends. Below: the segment in the room of the transport from the side and from the end, with the sizes
     of the box that it takes, mm.
     """
-    shell = next(shell for shell in gridshell.shells if shell.mark == segment.shell)
+    shell = index_of(gridshell).shells[segment.shell]
     outline = shell_outline(shell, WIDTH, _MARGIN)
     legend = " \u00b7 ".join(says(language, "segments.picture.legend"))
     words = group([text(legend, _MARGIN, outline.height + 10.0, 0.8 * _SMALL, "start")], Style("#000"))

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import is_in_shell, short_mark
 from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
@@ -51,13 +52,13 @@ def _clipped(points: Floats, start: float, end: float) -> Floats:
 
 def _own_planks(shell: Shell, segment: Segment) -> dict[str, tuple[str, float, float]]:
     """Return what a segment has of the planks of a shell, by a key: plank, start and end as shares of its length."""
-    lengths = {plank.mark: plank.blank.length for plank in shell.planks}
-    whole = {mark: (mark, 0.0, 1.0) for mark in segment.parts if mark in lengths}
+    planks = index_of(shell).planks
+    whole = {mark: (mark, 0.0, 1.0) for mark in segment.parts if mark in planks}
     cut = {
         f"{piece.plank}@{segment.name}": (
             piece.plank,
-            piece.start / lengths[piece.plank],
-            piece.end / lengths[piece.plank],
+            piece.start / planks[piece.plank].blank.length,
+            piece.end / planks[piece.plank].blank.length,
         )
         for piece in segment.pieces
     }
@@ -68,8 +69,8 @@ def cut_outline(outline: Outline, shell: Shell, segmentation: Segmentation) -> O
     """Return the outline of a shell with its cut planks as pieces, each by the mark of its plank, @ and its segment."""
     own = [segment for segment in segmentation.segments if segment.shell == shell.mark]
     pieces = {key: piece for segment in own for key, piece in _own_planks(shell, segment).items()}
-    layers = {plank.mark: plank.layer for plank in shell.planks}
-    order = sorted(pieces, key=lambda key: (layers[pieces[key][0]], key))
+    planks = index_of(shell).planks
+    order = sorted(pieces, key=lambda key: (planks[pieces[key][0]].layer, key))
     drawn = {key: _clipped(outline.planks[pieces[key][0]], *pieces[key][1:]) for key in order}
     return replace(outline, planks=drawn)
 
@@ -81,9 +82,9 @@ def _between(splices: Sequence[Splice], segments: Sequence[Segment]) -> list[Spl
 
 
 def _geodesic_of(shell: Shell, foot: str) -> str:
-    families = {plank.mark: plank.family for plank in shell.planks}
-    members = next(joint.members for joint in shell.joints if joint.mark == foot)
-    return next((mark for mark in members if families.get(mark) == "G"), "")
+    planks = index_of(shell).planks
+    members = index_of(shell).joints[foot].members
+    return next((mark for mark in members if mark in planks and planks[mark].family == "G"), "")
 
 
 def segment_scene(shell: Shell, step: Step, segmentation: Segmentation, stood: Sequence[str]) -> Scene:

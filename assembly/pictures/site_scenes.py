@@ -6,6 +6,7 @@ import numpy as np
 
 from aag_cad.language import Language
 from aag_cad.parts.index import index_of
+from aag_cad.parts.marks import shell_of
 from aag_cad.parts.model import Gridshell, Shell, shell_parts
 from assembly.base.steps import Step
 from assembly.drawing.outline import Outline, elevation_outline, vault_outline
@@ -112,10 +113,9 @@ def elevation_svg(shell: Shell, slings: Sequence[str] = (), flat: bool = True) -
 def key_svg(gridshell: Gridshell, shell: str) -> str:
     """Return a tiny plan of the whole with one shell black."""
     outline = vault_outline(gridshell, _KEY_WIDTH, 4.0)
-    marked = {plank.mark for s in gridshell.shells if s.mark == shell for plank in s.planks}
-    flat = {plank.mark for s in gridshell.shells for plank in s.planks if not plank.beam}
-    drawn = {mark: outline.lines[mark] for mark in outline.planks if mark in flat}
-    pale = (path(points, closed=False) for mark, points in drawn.items() if mark not in marked)
-    black = (path(points, closed=False) for mark, points in drawn.items() if mark in marked)
+    planks = index_of(gridshell).planks
+    drawn = {mark: outline.lines[mark] for mark in outline.planks if not planks[mark].beam}
+    pale = (path(points, closed=False) for mark, points in drawn.items() if shell_of(mark) != shell)
+    black = (path(points, closed=False) for mark, points in drawn.items() if shell_of(mark) == shell)
     items = [group(pale, Style("none", "#b5b5b5", 2.0)), group(black, Style("none", "#000", 4.0))]
     return svg(outline.width, outline.height, items)

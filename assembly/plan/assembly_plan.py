@@ -6,6 +6,7 @@ from dataclasses import asdict
 
 from aag_cad.errors import FileError
 from aag_cad.language import Language, say
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell, JointKind, Shell, all_parts
 from aag_cad.parts.quantities import mass, sizes
@@ -38,7 +39,6 @@ def piece_weights(gridshell: Gridshell, segmentation: Segmentation | None = None
     weights = {part.mark: (mass(part, gridshell.timber), sizes(part)[0]) for part in all_parts(gridshell)}
     for shell in gridshell.shells:
         kit = shell_kit(shell)
-        lengths = {beam.mark: beam.curve.length for beam in shell.beams}
         made = (*kit.beams.values(), *((stud, *bolts) for stud, bolts in kit.studs.items()), *kit.outside.values())
         made = (
             *made,
@@ -48,7 +48,7 @@ def piece_weights(gridshell: Gridshell, segmentation: Segmentation | None = None
         )
         weights[shell.mark] = sum(weights[mark][0] for group in made for mark in group), 0.0
         for beam, marks in kit.beams.items():
-            weights[beam] = sum(weights[mark][0] for mark in marks), lengths[beam]
+            weights[beam] = sum(weights[mark][0] for mark in marks), index_of(shell).beams[beam].curve.length
     return weights | segment_weights(gridshell, segmentation)
 
 

@@ -17,7 +17,7 @@ from assembly.base.crew import Crew, crew_of, hands_for
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.part_groups import Kit, shell_kit
 from assembly.base.steps import DownPhase, Plan, Step
-from assembly.graph.layers import crossing_levels, lying_unit
+from assembly.graph.layers import crossing_levels
 from assembly.laying.order import FlatOrder, flat_orders, groups_of
 from assembly.plan.assembly_plan import piece_weights
 from assembly.plan.parting import splice_extras
@@ -161,9 +161,9 @@ def _stud_bolts(shell: Shell) -> _Studs:
 def _dismantling(shell: Shell, runs: Sequence[Sequence[str]], kit: Kit) -> Iterator[_Task]:
     """Yield the taking apart of the flat shell: layers from the top, then on trestles studs, beams, passports."""
     name, studs = shell.mark, _stud_bolts(shell)
-    families = {lying_unit(plank): plank.family for plank in shell.planks}
+    laid = index_of(shell).units
     before, i, off = f"{name}.down.lower", 0, dict[str, str]()
-    split = [tuple(units) for run in reversed(runs) for _, units in groupby(run[::-1], key=lambda u: families[u])]
+    split = [tuple(units) for run in reversed(runs) for _, units in groupby(run[::-1], key=lambda u: laid[u].family)]
     for group in (group for run in split for group in groups_of(run, LAID_A_STEP)):
         i, beams = i + 1, tuple(unit for unit in group if unit in kit.beams)
         loose = tuple(unit for unit in group if unit not in kit.beams)
@@ -203,7 +203,7 @@ def _words(
     held = [bolt for shell in gridshell.shells if shell.mark == task.shell for bolt in shell.bolts]
     spring = ""
     if task.phase == "hang":
-        shell = next(shell for shell in gridshell.shells if shell.mark == task.shell)
+        shell = index_of(gridshell).shells[task.shell]
         energy, kg = stored_energy(shell, gridshell.timber), weights[shell.mark][0]
         lift = energy / (kg * _GRAVITY) * MM_PER_M
         spring = say(language, "down.words.spring", energy=f"{energy:.0f}", mass=f"{kg:.0f}", lift=f"{lift:.0f}")

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import chain, groupby
 
 from aag_cad.language import Figure, Language, say
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import short_mark
 from aag_cad.parts.model import Shell
 from assembly.base.mark_ranges import joined_ranges
@@ -79,12 +80,12 @@ def _prefabrication(task: _Task) -> Iterator[Work]:
 
 def _laying(task: _Task, made: Mapping[str, str]) -> Iterator[Work]:
     """Yield the flat layout; each step follows the one before and the making of its beams (``made``: beam -> id)."""
-    families = {plank.beam or plank.mark: plank.family for plank in task.shell.planks}
-    runs = (tuple(units) for run in task.order.runs for _, units in groupby(run, key=lambda unit: families[unit]))
+    laid = index_of(task.shell).units
+    runs = (tuple(units) for run in task.order.runs for _, units in groupby(run, key=lambda unit: laid[unit].family))
     groups = chain.from_iterable(groups_of(run, LAID_A_STEP) for run in runs)
     before: tuple[str, ...] = ()
     for i, group in enumerate(groups, start=1):
-        family = families[group[0]]
+        family = laid[group[0]].family
         beams = tuple(unit for unit in group if unit in task.kit.beams)
         work = Work(
             f"{task.shell.mark}.lay.{i}",

@@ -10,7 +10,7 @@ import numpy as np
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import shell_mesh
-from aag_cad.parts.model import Beam, Bolt, Joint, Part, Plank, Screw, Shell, Strap, Stud, Timber
+from aag_cad.parts.model import Bolt, Joint, Part, Plank, Screw, Shell, Strap, Stud, Timber
 from aag_cad.parts.quantities import mass
 from aag_cad.units import Floats
 from assembly.graph.cut_lines import Track, Tracks, tracks
@@ -62,11 +62,6 @@ class Divisible:
         return index_of(self.shell).planks
 
     @cached_property
-    def beams(self) -> dict[str, Beam]:
-        """The beams by mark."""
-        return index_of(self.shell).beams
-
-    @cached_property
     def small(self) -> dict[str, Part]:
         """Studs, coupling blocks, bolts, screws and straps by mark."""
         parts: tuple[Part, ...] = (
@@ -83,11 +78,6 @@ class Divisible:
     def centres(self) -> dict[str, Floats]:
         """A point (3,) in the middle of each small part, by mark."""
         return {mark: part_point(part) for mark, part in self.small.items()}
-
-    @cached_property
-    def stations(self) -> dict[tuple[str, str], float]:
-        """Stations of the joints on the planks, by (plank, joint)."""
-        return {(mark, place.joint): place.station for mark, plank in self.planks.items() for place in plank.joints}
 
     @cached_property
     def fixed_on_site(self) -> frozenset[str]:
@@ -167,7 +157,7 @@ def _intervals(
 
     ``splices`` are those of the cuts at the ends of the run, by station on the beam or edge plank.
     """
-    grid, member = item.tracks, item.planks[track.mark] if track.edge else item.beams[track.mark]
+    grid, member = item.tracks, index_of(item.shell).units[track.mark]
     cuts = [splices[station].cuts for station in sorted(splices)]
     bounds = [0.0, *sorted(splices), member.curve.length]
     bays, owned = grid.bays(start, end), grid.owned(start, end)
@@ -193,7 +183,7 @@ def _held(item: Divisible, spans: dict[str, list[PlankPiece]], joint: Joint) -> 
     """Return the planks of a joint that are in the run where the joint is."""
     held = []
     for mark in (mark for mark in joint.members if mark in spans):
-        at = item.stations.get((mark, joint.mark))
+        at = index_of(item.shell).stations.get((mark, joint.mark))
         if at is not None and any(p.start < at < p.end or _past_end(item, p, at) for p in spans[mark]):
             held.append(mark)
     return held
@@ -227,7 +217,7 @@ def _station(item: Divisible, splice: Splice) -> float:
     """Return where a splice is along its beam or edge plank; a beam's planks have stations of their own."""
     if splice.kind == "plate":
         return splice.cuts[0].station
-    return next(place.station for place in item.beams[splice.member].joints if place.joint == splice.joint)
+    return index_of(item.shell).stations[splice.member, splice.joint]
 
 
 def _spans(item: Divisible, start: int, end: int) -> dict[str, list[PlankPiece]]:

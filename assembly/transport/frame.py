@@ -155,8 +155,8 @@ def segment_shell(shell: Shell, splices: Sequence[Splice], segment: Segment) -> 
 
 def _fixed(own: Shell) -> tuple[str, ...]:
     """Return the flat planks that are joined to others at two joints at least: at one alone they turn on its screw."""
-    planks = {plank.mark for plank in own.planks}
-    met = [set(joint.members) & planks for joint in own.joints if joint.kind in _FRAMED]
+    planks = index_of(own).planks
+    met = [planks.keys() & joint.members for joint in own.joints if joint.kind in _FRAMED]
     flat = (plank.mark for plank in own.planks if not plank.upright)
     return tuple(mark for mark in flat if sum(mark in members and len(members) > 1 for members in met) > 1)
 
@@ -177,8 +177,8 @@ def bare_ends(shell: Shell, splices: Sequence[Splice], segment: Segment) -> dict
         own = any((item.plank, item.station) in cut for item in splice.cuts)
         if own and splice.kind == "block" and splice.line not in segment.geodesics:
             found[splice.line].append(splice.joint)
-    along = {plank.mark: [place.joint for place in plank.joints] for plank in shell.planks if plank.mark in found}
-    return {line: tuple(sorted(joints, key=along[line].index)) for line, joints in sorted(found.items())}
+    along = index_of(shell).stations
+    return {line: tuple(sorted(joints, key=lambda joint: along[line, joint])) for line, joints in sorted(found.items())}
 
 
 def _nearest(point: Vector, groups: Collection[tuple[str, ...]], points: dict[str, Vector]) -> tuple[str, ...]:
@@ -245,7 +245,7 @@ def braced_frame(
     """
     own = segment_shell(shell, splices, segment)
     frame, points = shell_frame(own, timber, fixed=_fixed(own), tight=tight), joint_points(shell)
-    bare, met = bare_ends(shell, splices, segment), {joint.mark: joint for joint in own.joints}
+    bare, met = bare_ends(shell, splices, segment), index_of(own).joints
     size, material = shell.planks[0].blank.section, FrameMaterial(timber.modulus, timber.shear_modulus)
     plank = rectangle_section(size.thickness, size.width)
     nodes, links, elements = list(frame.model.nodes), list(frame.model.links), list(frame.model.elements)

@@ -110,7 +110,7 @@ def _columns(item: Divisible, start: int, end: int, studs: dict[str, Floats]) ->
     order = [grid.bay(bay) for bay in range(start // 2 - 1, end // 2 + 1)]
     found: dict[int, list[str]] = {bay: [] for bay in dict.fromkeys(order) if bay in bays}
     for track in grid.members:
-        for place in item.beams[track.mark].joints if not track.edge else ():
+        for place in index_of(item.shell).beams[track.mark].joints if not track.edge else ():
             if place.joint in studs:
                 found[grid.bay(track.bay(place.station))].append(place.joint)
     return {bay: _rising(marks, studs) for bay, marks in found.items()}

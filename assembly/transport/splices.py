@@ -14,7 +14,7 @@ from typing import Literal
 
 from aag_cad.mechanics.checks.fastener_spacing import bolt_distances
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import CouplingBlock, Hole, Plank, Shell
+from aag_cad.parts.model import Hole, Plank, Shell
 from assembly.graph.cut_lines import Crossing, Track, Tracks
 
 PLAY = 2.0
@@ -78,16 +78,9 @@ def _obstacles(shell: Shell) -> dict[str, float]:
     return halves | {block.mark: block.length / 2.0 for block in shell.blocks}
 
 
-def _beam_splice(
-    shell: Shell,
-    track: Track,
-    crossing: Crossing,
-    line: str,
-    planks: dict[str, Plank],
-    blocks: dict[str, CouplingBlock],
-) -> Splice:
-    bolts = index_of(shell).bolts
-    joint = next(joint for joint in shell.joints if joint.mark == crossing.joint)
+def _beam_splice(shell: Shell, track: Track, crossing: Crossing, line: str) -> Splice:
+    planks, bolts, blocks = index_of(shell).planks, index_of(shell).bolts, index_of(shell).blocks
+    joint = index_of(shell).joints[crossing.joint]
     taken = [mark for mark in joint.fasteners if mark in bolts]
     diameter = max(bolts[mark].diameter for mark in taken)
     limits, halves = bolt_distances(diameter, 0.0), _obstacles(shell)
@@ -126,12 +119,8 @@ def _beam_splice(
 
 def beam_splices(shell: Shell, grid: Tracks) -> dict[tuple[str, str], Splice]:
     """Return the splice of each beam at each crossing where a cut along the line would cut it, by (beam, joint)."""
-    planks = index_of(shell).planks
-    blocks = index_of(shell).blocks
     return {
-        (track.mark, crossing.joint): _beam_splice(
-            shell, track, crossing, grid.lines[crossing.line - 1], planks, blocks
-        )
+        (track.mark, crossing.joint): _beam_splice(shell, track, crossing, grid.lines[crossing.line - 1])
         for track in grid.members
         for crossing in track.crossings
         if not track.edge and track.cut_at(crossing)

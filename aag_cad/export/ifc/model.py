@@ -130,7 +130,7 @@ def ifc_model(gridshell: Gridshell, steps: Sequence[Step] | None = None, options
     associate_materials(model, found, elements, gridshell.timber)
     _write_sets(model, gridshell, found, elements)
     write_assembly_sets(model, parts, elements, steps or ())
-    write_joints(model, all_joints(gridshell), {part.mark: part for part in parts}, elements)
+    write_joints(model, all_joints(gridshell), index_of(gridshell).parts, elements)
     if steps is not None and options.schema != "IFC2X3":
         write_schedule(model, gridshell, steps, elements)
     return model

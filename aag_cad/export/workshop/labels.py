@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from aag_cad.files import write_bytes
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.model import Beam, Gridshell, Plank, Shell
 from aag_cad.shop.groups import DrillGroup, all_planks, drawn_face, drill_groups
@@ -87,8 +88,8 @@ def _plank_label(gridshell: Gridshell, plank: Plank, group: DrillGroup, outline:
     }
 
 
-def _beam_label(gridshell: Gridshell, beam: Beam, lengths: dict[str, float], outline: Outline) -> dict[str, Any]:
-    left, right = (lengths[mark] for mark in beam.planks)
+def _beam_label(gridshell: Gridshell, beam: Beam, outline: Outline) -> dict[str, Any]:
+    left, right = (index_of(gridshell).planks[mark].blank.length for mark in beam.planks)
     return {
         "mark": beam.mark,
         "shell": shell_of(beam.mark),
@@ -119,9 +120,8 @@ def labels_data(gridshell: Gridshell) -> dict[str, Any]:
     planks, beams = [], []
     for shell in gridshell.shells:
         outline = outlines[shell.mark]
-        lengths = {plank.mark: plank.blank.length for plank in shell.planks}
         planks += [_plank_label(gridshell, plank, group_of[plank.mark], outline) for plank in shell.planks]
-        beams += [_beam_label(gridshell, beam, lengths, outline) for beam in shell.beams]
+        beams += [_beam_label(gridshell, beam, outline) for beam in shell.beams]
     return {
         "title": gridshell.title,
         "keys": {shell.mark: _key(shell, outlines[shell.mark]) for shell in gridshell.shells},

@@ -26,7 +26,7 @@ from aag_cad.mechanics.frame.model import (
 )
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import Beam, Joint, Plank, Shell, Timber, shell_parts
+from aag_cad.parts.model import Beam, Joint, Plank, Shell, Timber
 from aag_cad.parts.quantities import mass
 from aag_cad.units import Floats, Vector, vector
 
@@ -166,8 +166,8 @@ def _masses(
     shell: Shell, timber: Timber, beams: list[_Line], nodes: dict[str, int], beam_nodes: dict[str, tuple[str, ...]]
 ) -> Floats:
     """Return the masses (n,) at the nodes, kg; what belongs to a joint off the beams goes to the nearest beam."""
-    weights = {part.mark: mass(part, timber) for part in shell_parts(shell)}
-    joints = index_of(shell).joints
+    index = index_of(shell)
+    joints = index.joints
     names = [name for line in beams for name in line.nodes]
     points = np.concatenate([line.points for line in beams])
     found = np.zeros(len(nodes))
@@ -178,9 +178,8 @@ def _masses(
         for name in held:
             found[nodes[name]] += weight / len(held)
 
-    siblings = {beam.mark: beam.planks for beam in shell.beams}
     for line in beams:
-        carried = sum(weights[plank] for plank in siblings[line.mark])
+        carried = sum(mass(index.planks[plank], timber) for plank in index.beams[line.mark].planks)
         found[[nodes[name] for name in line.nodes]] += carried * _shares(line.stations, line.length)
     for plank in (plank for plank in shell.planks if not plank.upright):
         lying = [
@@ -189,12 +188,11 @@ def _masses(
         if lying:
             shares = _shares(np.array([item.station for item in lying]), plank.curve.length)
             for item, share in zip(lying, shares.tolist(), strict=True):
-                put(share * weights[plank.mark], joints[item.joint])
-    planks = index_of(shell).planks.keys()
+                put(share * mass(plank, timber), joints[item.joint])
     for joint in shell.joints:
         if joint.kind in (*_ON_BEAMS, "ridge"):
-            parts = {*joint.members, *joint.fasteners} - planks
-            put(sum(weights[part] for part in sorted(parts) if part in weights), joint)
+            parts = {*joint.members, *joint.fasteners} - index.planks.keys()
+            put(sum(mass(index.parts[part], timber) for part in sorted(parts) if part in index.parts), joint)
     return found
 
 
