@@ -18,15 +18,15 @@ from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell
 from aag_cad.parts.store import read_gridshell
 from aag_cad.pipeline import Report, gridshell_of
+from assembly.base.locking_order import LockingOrder
+from assembly.base.segments import Limits
+from assembly.base.steps import Plan
 from assembly.graph.files import graph_text, read_graph, shipped_graphs
 from assembly.graph.gridshell_graph import assembly_graph
-from assembly.locking.order import LockingOrder
-from assembly.plan.assembly_plan import Plan
 from assembly.plan.explain import explanation
 from assembly.plan.graph_plan import graph_durations, graph_plan
 from assembly.plan.planned import NO_LIMITS, limits_of, planned_of
 from assembly.plan.schedule import Schedule, schedule_of
-from assembly.transport.search import Limits
 
 # For what names no crew: four people who lift 25 kg each (EN 1005-2, the mass that most adults may lift).
 FOUR = Crew.model_validate({"people": 4, "lift_limit": 25.0})

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from aag_cad.audit import (
-    Finding,
     audit,
     bolt_findings,
     clash_findings,
@@ -19,6 +18,7 @@ from aag_cad.audit import (
     ridge_findings,
 )
 from aag_cad.design import Design
+from aag_cad.findings import Finding
 from aag_cad.parts.model import Blank, Gridshell, Plank
 from aag_cad.shop.purchases import purchases_of
 

@@ -10,6 +10,7 @@ from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
 
 _UPRIGHT = 1e-3
+_ONE_LINE = 1e-9
 _NOT_TIMBER = ("footing", "cover")
 
 
@@ -59,3 +60,20 @@ def elevation_view(shell: Shell) -> View:
 def vault_view() -> View:
     """Return the plan: seen from above, x to the right and y up the sheet."""
     return View(np.eye(3))
+
+
+def best_plane(points: Floats) -> Floats:
+    """Return the axes of the plane nearest to points (n, 3): right, up and outward, (3, 3) with one axis a row.
+
+    The plane is level if that fits as well as any; up is then y, and else the vertical as seen in the plane.
+    """
+    centred = points - points.mean(axis=0) if len(points) else points
+    spread = centred.T @ centred
+    sizes, axes = np.linalg.eigh(spread)
+    level = spread[2, 2] - sizes[0] <= _ONE_LINE * sizes[2]
+    normal = np.array([0.0, 0.0, 1.0]) if level else axes[:, 0]
+    normal *= np.sign(next(part for part in normal[::-1] if abs(part) > _ONE_LINE))
+    upright = np.array([0.0, 1.0, 0.0]) if 1.0 - normal[2] ** 2 < _ONE_LINE else np.array([0.0, 0.0, 1.0])
+    up = upright - (upright @ normal) * normal
+    up /= np.linalg.norm(up)
+    return np.array([np.cross(up, normal), up, normal])

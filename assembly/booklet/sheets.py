@@ -5,15 +5,16 @@ from typing import Any
 
 from aag_cad.language import Language, figure, say
 from aag_cad.parts.model import Gridshell, Shell
+from assembly.base.locking_order import LockingOrder
 from assembly.base.mark_ranges import joined_ranges
-from assembly.locking.order import LockingOrder, locking_svg, locking_table, plot_words
+from assembly.base.segments import Segmentation
 from assembly.pictures.label_map import MAP_SIZE, label_map_svg
 from assembly.pictures.layer_legend import layer_legend_svg
 from assembly.pictures.laying_plan import laying_header, laying_plan_svg, laying_rows
+from assembly.pictures.locking_chart import locking_svg, locking_table
 from assembly.pictures.segment_picture import segment_svg
 from assembly.plan.planned import Planned
 from assembly.transport.segment_sheet import segment_cards
-from assembly.transport.segments import Segmentation
 
 # The joints on each map: those that a crew looks for on the whole shell, and the many blocks on one of their own.
 _MAPS = (("N", "F", "R"), ("K",))
@@ -78,7 +79,7 @@ def locking_sheets(orders: Sequence[LockingOrder], twins: Mapping[str, str], lan
     """Return the locking order of each kind of shell as table and plot."""
     names, sheets, pictures = alike(twins), [], dict[str, str]()
     for order in (order for order in orders if order.shell in names):
-        pictures[f"locking-{order.shell}"] = locking_svg(order, plot_words(language))
+        pictures[f"locking-{order.shell}"] = locking_svg(order, language)
         price = figure(f"{100.0 * order.rule_price:.1f}", language)
         sheets.append({
             "title": say(language, "booklet.locking.title", shells=names[order.shell]),

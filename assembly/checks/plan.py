@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import shells_of
 from aag_cad.parts.model import Footing, Gridshell, Part, Rod, Shell, Shoe, ridge_parts, shell_parts
+from assembly.base.locking_order import LockingOrder
+from assembly.base.segments import Segmentation
 from assembly.base.steps import Plan, Step
 from assembly.checks.stability import ancestors, locking_problems, prop_problems, travel_problems
-from assembly.locking.order import LockingOrder
-from assembly.transport.segments import Segmentation
 
 
 def numbering_problems(plan: Plan) -> Iterator[str]:

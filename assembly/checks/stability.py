@@ -9,9 +9,9 @@ from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Shell
 from aag_cad.units import Floats
+from assembly.base.locking_order import LockingOrder
+from assembly.base.segments import Segment, Segmentation
 from assembly.base.steps import Phase, Plan, Step
-from assembly.locking.order import LockingOrder
-from assembly.transport.segments import Segment, Segmentation
 
 _LEAST_PROPS = 2
 

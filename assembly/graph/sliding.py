@@ -10,8 +10,8 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from aag_cad.units import Floats
+from assembly.base.shell_axes import best_plane
 from assembly.graph.laying_units import PARALLEL, Crossing, Meeting, Unit
-from assembly.laying.walking import best_plane
 
 End: TypeAlias = Literal["start", "end"]
 Why: TypeAlias = Literal["upright", "kept", "unknown", "radius", "length"]

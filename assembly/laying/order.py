@@ -16,7 +16,7 @@ from aag_cad.parts.model import Gridshell, Shell, Stud
 from aag_cad.units import MM_PER_M, Floats, Vector
 from assembly.base.crew import LONG_PIECE
 from assembly.base.errors import PlanError
-from assembly.base.shell_axes import shell_view, sweep_direction
+from assembly.base.shell_axes import best_plane, shell_view, sweep_direction
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import Interlacing, Slide, interlacing, refuse_left_out
 from assembly.graph.layers import layer_precedence
@@ -26,7 +26,6 @@ from assembly.laying.walking import (
     Line,
     Point,
     alternated,
-    best_plane,
     best_stack,
     on_floor,
     path_length,

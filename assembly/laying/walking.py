@@ -56,23 +56,6 @@ def on_floor(points: Floats) -> Floats:
     return np.asarray(np.round(points, _DECIMALS))
 
 
-def best_plane(points: Floats) -> Floats:
-    """Return the axes of the plane nearest to points (n, 3): right, up and outward, (3, 3) with one axis a row.
-
-    The plane is level if that fits as well as any; up is then y, and else the vertical as seen in the plane.
-    """
-    centred = points - points.mean(axis=0) if len(points) else points
-    spread = centred.T @ centred
-    sizes, axes = np.linalg.eigh(spread)
-    level = spread[2, 2] - sizes[0] <= _ONE_LINE * sizes[2]
-    normal = np.array([0.0, 0.0, 1.0]) if level else axes[:, 0]
-    normal *= np.sign(next(part for part in normal[::-1] if abs(part) > _ONE_LINE))
-    upright = np.array([0.0, 1.0, 0.0]) if 1.0 - normal[2] ** 2 < _ONE_LINE else np.array([0.0, 0.0, 1.0])
-    up = upright - (upright @ normal) * normal
-    up /= np.linalg.norm(up)
-    return np.array([np.cross(up, normal), up, normal])
-
-
 def stack_places(points: Floats) -> Floats:
     """Return the places for a stack (m, 2): at most 1 m apart round the rectangle of points, 1 m outside it."""
     low, high = points.min(axis=0) - STACK_MARGIN, points.max(axis=0) + STACK_MARGIN

@@ -23,6 +23,7 @@ from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Shell, Timber
 from aag_cad.units import Floats, Ints
 from assembly.base.errors import PlanError
+from assembly.base.locking_order import Prop
 from assembly.base.part_groups import shell_kit
 from assembly.base.shell_axes import sweep_direction
 
@@ -87,15 +88,6 @@ class LockingModel:
     upper: tuple[str, ...]
     geodesics: tuple[tuple[str, ...], ...]
     grids: dict[frozenset[str], GridFrame]
-
-
-@dataclass(frozen=True)
-class Prop:
-    """A prop proposed under a joint: how far it sinks without it, mm, and the force on it with all props, N."""
-
-    joint: str
-    sinking: float
-    force: float
 
 
 @dataclass(frozen=True)

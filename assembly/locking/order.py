@@ -5,24 +5,18 @@ screwed on takes freedom away (paper, section 3.1: the geodesics lock the kineti
 docs/locking.md.
 """
 
-import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import chain, combinations
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
-import numpy as np
-
-from aag_cad.language import Language, figure, say, says, words_table
 from aag_cad.parts.marks import in_other_shell, short_mark
 from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
-from assembly.base.mark_ranges import joined_ranges
-from assembly.drawing.svg import CHARACTER, Style, circle, group, line, polygon, rectangle, svg, text
+from assembly.base.locking_order import Group, LockingOrder, LockingStep
 from assembly.locking.model import (
     LockingModel,
-    Prop,
     Sag,
     locking_model,
     modes_of,
@@ -33,7 +27,6 @@ from assembly.locking.model import (
     state_sag,
 )
 
-Group: TypeAlias = tuple[str, ...]
 Value: TypeAlias = Callable[[frozenset[Group]], float]
 
 SOFT = 0.5
@@ -41,61 +34,6 @@ SAG_LIMIT = 20.0
 MODES = 6
 MOST_PROPS = 4
 _DIGITS = 6
-
-LOCKING_HEADER = (
-    "shell", "step", "fixed", "soft_modes", "lowest_eigenvalue_1_s2", "mode_1_hz", "mode_2_hz", "mode_3_hz",
-    "displacement_mm", "at", "props", "displacement_with_props_mm",
-)  # fmt: skip
-
-
-@dataclass(frozen=True)
-class LockingStep:
-    """A shell after a step: the planks fixed in it (none: just hoisted), and what that leaves.
-
-    ``eigenvalues`` are the lowest ones of K v = lambda M v, 1/s2; ``soft_modes`` how many are below the threshold of
-    the order; ``displacement`` the largest under self-weight, mm, at joint ``at``. ``props`` are proposed where a soft
-    mode is left and the displacement exceeds the limit; ``propped`` is the displacement with them, mm.
-    """
-
-    marks: Group
-    eigenvalues: tuple[float, ...]
-    soft_modes: int
-    displacement: float
-    at: str
-    props: tuple[Prop, ...]
-    propped: float
-
-
-@dataclass(frozen=True)
-class LockingOrder:
-    """The order of fixing of a shell: first the state after hoisting, then a step for each group of planks.
-
-    ``feet`` are held in x, y and z, the studs ``hoists`` in z. A mode is soft if its eigenvalue is below ``threshold``,
-    1/s2. ``released`` is the shell with all planks fixed, all bolts tightened and the props at the hoists away.
-    ``area`` is the sum of the lowest eigenvalue over the steps, ``free_area`` that of the order found without the rule
-    that edge planks come first: ``rule_price`` is the share that the rule costs.
-    """
-
-    shell: str
-    feet: tuple[str, ...]
-    hoists: tuple[str, ...]
-    edges_first: bool
-    threshold: float
-    limit: float
-    steps: tuple[LockingStep, ...]
-    released: LockingStep
-    area: float
-    free_area: float
-
-    @property
-    def rule_price(self) -> float:
-        """The share of the area under the lowest eigenvalue that is lost by fixing the edge planks first."""
-        return 1.0 - self.area / self.free_area
-
-
-def frequency(eigenvalue: float) -> float:
-    """Return the frequency in Hz of an eigenvalue in 1/s2; 0 for one that rounding left below 0."""
-    return math.sqrt(max(0.0, eigenvalue)) / (2.0 * math.pi)
 
 
 def soft_mode_count(eigenvalues: Sequence[float], threshold: float) -> int:
@@ -274,121 +212,3 @@ def locking_orders(
         )
         found.append((shell, _renumbered(order, shell.mark)))
     return tuple(order for _, order in found)
-
-
-def _row(shell: str, name: str, step: LockingStep) -> tuple[str, ...]:
-    hertz = [f"{frequency(value):.2f}" for value in step.eigenvalues[:3]]
-    props = " ".join(prop.joint for prop in step.props)
-    return (
-        shell,
-        name,
-        " ".join(step.marks),
-        str(step.soft_modes),
-        f"{step.eigenvalues[0]:.1f}",
-        *[*hertz, "", ""][:3],
-        f"{step.displacement:.1f}",
-        step.at,
-        props,
-        f"{step.propped:.1f}" if props else "",
-    )
-
-
-def locking_rows(order: LockingOrder) -> list[tuple[str, ...]]:
-    """Return the order as lines of a table under ``LOCKING_HEADER``: step 0 is the hoisted shell.
-
-    The last line, "released", is the finished shell with tightened bolts and without the props at the hoists.
-    """
-    rows = [_row(order.shell, str(i), step) for i, step in enumerate(order.steps)]
-    return [*rows, _row(order.shell, "released", order.released)]
-
-
-def locking_table(order: LockingOrder, language: Language = "en") -> dict[str, Any]:
-    """Return the order as head and rows of text for print: a line for each step, the last for the finished shell."""
-    rows, (first, last) = [], (say(language, f"pictures.locking.{name}") for name in ("start", "released"))
-    told = [first, *(joined_ranges(step.marks) for step in order.steps[1:]), last]
-    for i, step in enumerate((*order.steps, order.released)):
-        hertz = [figure(f"{frequency(value):.2f}", language) for value in step.eigenvalues[:2]]
-        props = joined_ranges([prop.joint for prop in step.props])
-        head, tail = str(i) if i < len(order.steps) else "", f"{step.propped:.0f}" if props else ""
-        modes = [str(step.soft_modes), *hertz, ""][:3]
-        rows.append([head, told[i], *modes, f"{step.displacement:.0f}", short_mark(step.at), props, tail])
-    return {"head": list(says(language, "pictures.locking.head")), "rows": rows}
-
-
-@dataclass(frozen=True)
-class PlotWords:
-    """The words of the plot; ``lowest`` has a place for the mark of the shell."""
-
-    language: Language
-    hoisted: str
-    axis: str
-    soft: str
-    lowest: str
-
-
-def plot_words(language: Language = "en") -> PlotWords:
-    """Return the words of the plot in a language."""
-    words = words_table("pictures")["locking"]
-    return PlotWords(language, *(words[key][language] for key in ("hoisted", "axis", "soft", "lowest")))
-
-
-_WIDTH, _HEIGHT = 1700.0, 760.0
-_LEFT, _RIGHT, _TOP, _BOTTOM = 120.0, 30.0, 60.0, 190.0
-_SIZE, _SMALL = 30.0, 24.0
-_SHOWN = 4
-_LINES = 3
-_LETTERS = 5
-
-
-def _scale(top: float) -> tuple[float, list[float]]:
-    """Return the upper end of an axis from 0 and its ticks: a round step, four to ten of them."""
-    decade = 10.0 ** math.floor(math.log10(top))
-    step = next(decade * share for share in (1.0, 0.5, 0.2) if top / (decade * share) >= 4.0)
-    count = math.ceil(top / step - 1e-9)
-    return count * step, [i * step for i in range(count + 1)]
-
-
-def _axes(
-    x: Floats, order: LockingOrder, ticks: Sequence[float], y: Callable[[float], float], language: Language
-) -> Iterator[str]:
-    """Yield grid lines, the band of soft modes, ticks and the planks of each step in at most three lines."""
-    right = _WIDTH - _RIGHT
-    soft = y(frequency(order.threshold))
-    yield group([rectangle(_LEFT, soft, right - _LEFT, y(0.0) - soft)], Style("#ddd"))
-    for tick in ticks:
-        yield line(np.array([(_LEFT, y(tick)), (right, y(tick))]), Style(stroke="#999", width=1.0))
-        yield text(figure(f"{tick:g}", language), _LEFT - 14, y(tick), _SMALL, "end")
-    size = min(_SMALL, float(x[1] - x[0]) / (_LETTERS * CHARACTER))
-    for place, step, number in zip(x.tolist(), order.steps, range(len(order.steps)), strict=True):
-        yield text(str(number), place, y(0.0) + 30, _SIZE, bold=True)
-        names = [short_mark(mark) for mark in step.marks]
-        names = names if len(names) <= _LINES else [*names[: _LINES - 1], f"+{len(names) - _LINES + 1}"]
-        for i, name in enumerate(names):
-            yield text(name, place, y(0.0) + 68 + 30 * i, size)
-
-
-def locking_svg(order: LockingOrder, words: PlotWords | None = None) -> str:
-    """Return a plot of the lowest frequencies by step as SVG, 170 mm wide: black the softest mode, grey the next ones.
-
-    The grey band below holds the soft modes.
-    """
-    said = words or plot_words()
-    shown = np.array([[frequency(v) for v in step.eigenvalues[:_SHOWN]] for step in order.steps])
-    top, ticks = _scale(float(shown.max()))
-
-    def y(value: float) -> float:
-        return _HEIGHT - _BOTTOM - value / top * (_HEIGHT - _TOP - _BOTTOM)
-
-    x = np.linspace(_LEFT + 60.0, _WIDTH - _RIGHT - 60.0, len(order.steps))
-    items = list(_axes(x, order, ticks, y, said.language))
-    items.append(text(said.axis, _LEFT - 14, _TOP - 34, _SMALL, "end"))
-    items.append(text(said.lowest.format(shell=order.shell), _LEFT, _TOP - 34, _SMALL, "start"))
-    items.append(text(said.soft, _WIDTH - _RIGHT - 12, y(frequency(order.threshold)) + 22, _SMALL, "end"))
-    items.append(text(said.hoisted, float(x[0]), y(0.0) + 68, _SMALL))
-    for mode in reversed(range(shown.shape[1])):
-        points = np.column_stack([x, [y(value) for value in shown[:, mode].tolist()]])
-        colour, width = ("#000", 5.0) if mode == 0 else ("#777", 2.0)
-        items.append(line(points, Style(stroke=colour, width=width, dash="" if mode == 0 else "8 6")))
-        items.append(group((circle(point, 9.0 if mode == 0 else 6.0) for point in points), Style(colour)))
-    frame = np.array([(_LEFT, y(top)), (_LEFT, y(0.0)), (_WIDTH - _RIGHT, y(0.0)), (_WIDTH - _RIGHT, y(top))])
-    return svg(_WIDTH, _HEIGHT, [*items, polygon(frame, Style(stroke="#000", width=2.0))])

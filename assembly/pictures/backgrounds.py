@@ -23,11 +23,11 @@ from aag_cad.parts.model import (
 )
 from aag_cad.units import Floats
 from assembly.base.part_groups import shell_kit
+from assembly.base.segments import Segmentation
 from assembly.base.steps import DOWN_PHASES, Plan, Step
 from assembly.drawing.outline import Outline, ridge_outline, shell_outline, vault_outline
 from assembly.graph.interlacing import Slide
 from assembly.pictures.segment_scenes import stood_segments
-from assembly.transport.segments import Segmentation
 
 PAGE_WIDTH = 1800.0
 SMALL_WIDTH = 880.0

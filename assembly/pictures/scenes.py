@@ -8,6 +8,7 @@ from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import in_other_shell, is_in_shell, joint_of, parse_mark, shell_of, short_mark
 from aag_cad.parts.model import Shell
 from assembly.base.part_groups import driven_from_outside
+from assembly.base.segments import Segmentation
 from assembly.base.steps import DOWN_PHASES, Plan, Step
 from assembly.drawing.bench import beam_strips_svg
 from assembly.drawing.outline import shell_outline
@@ -21,7 +22,6 @@ from assembly.pictures.segment_scenes import cut_outline, moved_segments, segmen
 from assembly.pictures.site_scenes import elevation_svg, foot_sections, ridge_pictures, site_svg
 from assembly.pictures.step_pictures import NEW, PIECES, STEEL, THERE, Scene, prop_items, scene_svg
 from assembly.plan.shape_control import control_figures, sling_points
-from assembly.transport.segments import Segmentation
 
 __all__ = [
     "PAGE_WIDTH",

@@ -11,6 +11,7 @@ from aag_cad.parts.marks import short_mark
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Plank, Shell
 from aag_cad.units import Floats
+from assembly.base.segments import Brace, PlankPiece, Segment, Segmentation, Splice
 from assembly.drawing.outline import Outline, shell_outline
 from assembly.drawing.part_outlines import plank_rings
 from assembly.drawing.svg import (
@@ -30,11 +31,7 @@ from assembly.drawing.svg import (
     svg,
     text,
 )
-from assembly.transport.cut_pieces import PlankPiece
-from assembly.transport.lifting import Brace
 from assembly.transport.segment_sheet import splices_of
-from assembly.transport.segments import Segment, Segmentation
-from assembly.transport.splices import Splice
 
 WIDTH = 1800.0
 _MARGIN = 60.0

@@ -9,12 +9,11 @@ from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import is_in_shell, short_mark
 from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
+from assembly.base.segments import Segment, Segmentation, Splice
 from assembly.base.steps import Plan, Step
 from assembly.drawing.outline import Outline
 from assembly.pictures.named_marks import feet_of, numbers_of
 from assembly.pictures.step_pictures import Scene
-from assembly.transport.segments import Segment, Segmentation
-from assembly.transport.splices import Splice
 
 
 def moved_segments(step: Step, segmentation: Segmentation | None) -> tuple[Segment, ...]:

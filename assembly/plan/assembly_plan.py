@@ -13,16 +13,16 @@ from aag_cad.parts.quantities import mass, sizes
 from aag_cad.parts.store import value_of
 from assembly.base.crew import Crew, crew_of, hands_for, lifting_findings
 from assembly.base.errors import PlanError
+from assembly.base.locking_order import LockingOrder
 from assembly.base.part_groups import shell_kit
+from assembly.base.segments import Segmentation, segments_of
 from assembly.base.steps import Plan, Step
 from assembly.laying.order import FlatOrder, flat_orders
-from assembly.locking.order import LockingOrder
 from assembly.plan.parting import divide_works, made_with_splices
 from assembly.plan.shell_work import Work, shell_works
 from assembly.plan.site_work import site_works
 from assembly.plan.wording import Fastener, fasteners_by_kind, wording
-from assembly.transport.seams import segments_of
-from assembly.transport.segments import Segmentation, segment_findings
+from assembly.transport.segments import segment_findings
 from assembly.transport.stiffness import stiffness_findings
 
 __all__ = ["Plan", "Step", "plan_json", "plan_of", "read_plan"]

@@ -16,6 +16,7 @@ from aag_cad.units import MM_PER_M
 from assembly.base.crew import Crew, crew_of, hands_for
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.part_groups import Kit, shell_kit
+from assembly.base.segments import Segmentation, segments_of
 from assembly.base.steps import DownPhase, Plan, Step
 from assembly.graph.layers import crossing_levels
 from assembly.laying.order import FlatOrder, flat_orders, groups_of
@@ -25,8 +26,6 @@ from assembly.plan.shape_control import prop_points
 from assembly.plan.shell_work import BEAMS_A_STEP, EVERYONE, LAID_A_STEP, PAIR
 from assembly.plan.site_work import ridge_pairs
 from assembly.plan.wording import Wording, spanners
-from assembly.transport.seams import segments_of
-from assembly.transport.segments import Segmentation
 
 _PAIRS_A_STEP = 4
 _GRAVITY = 9.81

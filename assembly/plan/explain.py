@@ -9,9 +9,9 @@ import networkx as nx
 from aag_cad.language import Language, figure, say, words_table
 from aag_cad.parts.marks import joint_of
 from assembly.base.errors import PlanError
+from assembly.base.locking_order import LockingOrder, LockingStep, frequency
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.steps import Plan, Step
-from assembly.locking.order import LockingOrder, LockingStep, frequency
 from assembly.plan.schedule import Schedule
 
 _MOST_SHOWN = 8

@@ -15,13 +15,10 @@ from aag_cad.parts.marks import short_mark
 from aag_cad.units import MM_PER_M
 from assembly.base.crew import Crew, crew_of, hands_for, lifting_findings, named_marks
 from assembly.base.steps import Phase, Plan, Step
-from assembly.checks.graph_plan import check_graph_plan
 from assembly.graph.interlacing import Crossing, Interlacing, Slide, interlacing
 from assembly.graph.laying_units import Unit, units_of
 from assembly.laying.joining import Joining, joinings
 from assembly.laying.order import FlatOrder, flat_order_of, groups_of
-
-__all__ = ["check_graph_plan", "graph_durations", "graph_plan"]
 
 LAID_A_STEP = 7
 JOINTS_A_STEP = 24

@@ -12,11 +12,10 @@ from aag_cad.language import Figure, Language, say
 from aag_cad.parts.marks import joint_of, parse_mark, short_mark
 from aag_cad.parts.model import Shell
 from assembly.base.mark_ranges import joined_ranges
+from assembly.base.segments import Segment, Segmentation, Splice, segments_of
 from assembly.plan.shell_work import EVERYONE, Work
-from assembly.transport.seams import Seam, seams, segments_of
+from assembly.transport.seams import Seam, seams
 from assembly.transport.segment_sheet import brace_words
-from assembly.transport.segments import Segment, Segmentation
-from assembly.transport.splices import Splice
 
 _KINDS = {"W": "screw", "B": "bolt", "K": "block", "R": "strap", "N": "stud"}
 

@@ -6,16 +6,17 @@ from dataclasses import dataclass, replace
 from aag_cad.design_making import Crew, Transport
 from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell
+from assembly.base.locking_order import LockingOrder
+from assembly.base.segments import Limits, Segmentation
 from assembly.base.steps import Plan
 from assembly.laying.flattening import FlatState, flat_findings, flat_state
 from assembly.laying.order import FlatOrder, flat_orders
-from assembly.locking.order import LockingOrder, locking_orders
+from assembly.locking.order import locking_orders
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.disassembly import disassembly_of
 from assembly.plan.durations import step_minutes
 from assembly.plan.schedule import Schedule, schedule_of
-from assembly.transport.search import Limits
-from assembly.transport.segments import Segmentation, segments
+from assembly.transport.segments import segments
 
 
 @dataclass(frozen=True)

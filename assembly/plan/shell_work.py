@@ -8,11 +8,11 @@ from aag_cad.language import Figure, Language, say
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import short_mark
 from aag_cad.parts.model import Shell
+from assembly.base.locking_order import LockingOrder
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.part_groups import Kit, shell_kit
 from assembly.base.steps import Phase
 from assembly.laying.order import FlatOrder, groups_of, row_groups
-from assembly.locking.order import LockingOrder
 
 BEAMS_A_STEP = 4
 LAID_A_STEP = 7

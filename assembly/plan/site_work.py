@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from aag_cad.language import Figure, Language, say
 from aag_cad.parts.marks import joint_of, shell_of, shells_of, short_mark
 from aag_cad.parts.model import Gridshell, Shell
+from assembly.base.locking_order import LockingOrder
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.part_groups import Kit, shell_kit
-from assembly.locking.order import LockingOrder
+from assembly.base.segments import Segment, Segmentation, segments_of
 from assembly.plan.parting import brace_extras, seam_extras
 from assembly.plan.shell_work import EVERYONE, PAIR, Work
-from assembly.transport.seams import Seam, foot_joints, segments_of, standing_order
-from assembly.transport.segments import Segment, Segmentation
+from assembly.transport.seams import Seam, foot_joints, standing_order
 
 
 @dataclass(frozen=True)

@@ -13,22 +13,14 @@ from aag_cad.parts.mesh import shell_mesh
 from aag_cad.parts.model import Bolt, Joint, Part, Plank, Screw, Shell, Strap, Stud, Timber
 from aag_cad.parts.quantities import mass
 from aag_cad.units import Floats
+from assembly.base.segments import PlankPiece, Splice
 from assembly.graph.cut_lines import Track, Tracks, tracks
 from assembly.graph.gridshell_graph import part_point
-from assembly.transport.splices import Splice, beam_splices, edge_splices
+from assembly.transport.splices import beam_splices, edge_splices
 
 CORNER_SPACING = 60.0
 _CENTRE_SAMPLES = 33
 _CARRIED_JOINTS = ("AA", "AG", "boundary", "ridge")
-
-
-@dataclass(frozen=True)
-class PlankPiece:
-    """A piece of a cut plank: from one station of the whole blank to another, mm."""
-
-    plank: str
-    start: float
-    end: float
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from aag_cad.findings import Finding, Severity
 from aag_cad.language import Figure, Text, text
 from aag_cad.parts.marks import short_mark
+from assembly.base.segments import Lifting, Limits, Pose, Splice
 from assembly.transport.cut_pieces import Divisible, Run, run_between, run_splices
-from assembly.transport.lifting import LEAST_MARGIN, Lifting
-from assembly.transport.loading import Pose
-from assembly.transport.search import Limits, least_widths, pose_in, segment_ends, smallest_runs
-from assembly.transport.splices import Splice
+from assembly.transport.lifting import LEAST_MARGIN
+from assembly.transport.search import least_widths, pose_in, segment_ends, smallest_runs
 
 _ROUNDING = 1e-9
 _UP_TO = 10.0

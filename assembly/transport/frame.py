@@ -29,9 +29,7 @@ from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Beam, Joint, JointStation, Plank, Shell, Timber
 from aag_cad.units import Floats, Ints, Vector, vector
 from assembly.base.errors import PlanError
-from assembly.transport.lifting import Brace
-from assembly.transport.segments import Segment
-from assembly.transport.splices import Splice
+from assembly.base.segments import Brace, Segment, Splice
 
 _SAMPLE_SPACING = 150.0
 _LEAST_SAMPLES = 13

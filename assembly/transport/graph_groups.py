@@ -8,8 +8,8 @@ import numpy as np
 
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
+from assembly.base.segments import Limits
 from assembly.transport.loading import best_pose
-from assembly.transport.search import Limits
 
 Halves: TypeAlias = tuple[list[str], list[str]]
 

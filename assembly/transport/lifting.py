@@ -1,7 +1,6 @@
 """Where a segment is slung and propped, and what keeps it stiff until it is joined again."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Literal
 
@@ -9,6 +8,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from aag_cad.units import Floats
+from assembly.base.segments import Brace, Lifting
 
 LEAST_MARGIN = 100.0
 STIFF_GEODESICS = 3
@@ -17,40 +17,6 @@ _PROPPED = 16
 _OVERHANG = 100.0
 # A triangle of which twice the area is below this part of its longest side squared is a line in plan.
 _FLAT = 1e-6
-
-
-@dataclass(frozen=True)
-class Lifting:
-    """Joints to sling a segment by, standing as in the vault; ``margin`` is how far inside them its plumb line is, mm.
-
-    ``above`` says whether the plane of the studs passes above the centre of gravity: then it hangs without tipping
-    even from short slings. They are studs, coupling blocks where studs will not do. Without three joints around the
-    plumb line there are none, and the margin is negative.
-    """
-
-    studs: tuple[str, ...]
-    margin: float
-    above: bool
-
-
-@dataclass(frozen=True)
-class Brace:
-    """A temporary piece between two joints: length between them and 100 mm past each, mm.
-
-    A ``bar`` is a plank bent along the bare beam ends of a cut, fixed to each of them; a ``tie`` the straight chord
-    from the lowest to the highest stud beside a cut; a ``diagonal`` goes from corner to corner. Ties and diagonals are
-    two planks screwed to a T: one plank of 4 m buckles at 140 N, less than what segments press it with.
-    """
-
-    kind: Literal["bar", "tie", "diagonal"]
-    start: str
-    end: str
-    length: float
-
-    @property
-    def planks(self) -> int:
-        """Of how many planks it is made."""
-        return 1 if self.kind == "bar" else 2
 
 
 def _margins(corners: Floats, centre: Floats) -> tuple[Floats, Floats]:

@@ -1,31 +1,19 @@
 """The best way to load a body into a box: extents and axes of the pose that leaves most room."""
 
 import math
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from aag_cad.units import Floats, Vector, vector
+from assembly.base.segments import Pose
 
 _TILTS = 400
 _TURNS = 18
 _STARTS = 3
 _FIRST_STEP, _LAST_STEP = math.radians(4.0), math.radians(0.02)
 _GOLDEN = math.pi * (3.0 - math.sqrt(5.0))
-
-
-@dataclass(frozen=True)
-class Pose:
-    """How a body lies in a box: unit axes along its length, width and height, and its extents along them, mm.
-
-    ``filling`` is the largest of extent / room of the three: at most 1 if the body fits.
-    """
-
-    axes: tuple[Vector, Vector, Vector]
-    size: Vector
-    filling: float
 
 
 def hull_points(points: Floats) -> Floats:

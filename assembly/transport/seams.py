@@ -10,9 +10,8 @@ import numpy as np
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import joint_of
 from aag_cad.parts.model import Plank, Shell
+from assembly.base.segments import Segment, Segmentation, Splice, segments_of
 from assembly.graph.cut_lines import tracks
-from assembly.transport.segments import Segment, Segmentation
-from assembly.transport.splices import Splice
 
 _PLAY = 50.0
 _STEP = 50.0
@@ -38,12 +37,6 @@ class Seam:
     def gap(self) -> float:
         """How far from the other one segment is let down before it is drawn in, mm, in round figures."""
         return _STEP * math.ceil((self.reach + _PLAY) / _STEP)
-
-
-def segments_of(segmentation: Segmentation | None, shell: str) -> tuple[Segment, ...]:
-    """Return the segments of a shell from the first geodesic to the last; none if it travels whole."""
-    own = tuple(segment for segment in segmentation.segments if segment.shell == shell) if segmentation else ()
-    return own if len(own) > 1 else ()
 
 
 def _neighbours(shell: Shell, own: Sequence[Segment]) -> list[tuple[Segment, Segment]]:

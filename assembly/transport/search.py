@@ -3,16 +3,15 @@
 import math
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
 import numpy as np
 
-from aag_cad.units import Vector
 from assembly.base.errors import PlanError
+from assembly.base.segments import Limits, Pose
 from assembly.transport.cut_pieces import Divisible, Run, run_between, run_splices
-from assembly.transport.loading import Pose, best_pose
+from assembly.transport.loading import best_pose
 from assembly.transport.partition import best_chain, best_ring
 
 _ROUNDING = 1e-9
@@ -20,30 +19,6 @@ _GRAMS = 1000.0
 _WIDEST = 4.0
 _HALVINGS = 6
 _ENDLESS = 100.0
-
-
-@dataclass(frozen=True)
-class Limits:
-    """The largest piece that travels: inner length, width and height of the transport, mm; its load and a crane's, kg.
-
-    ``crane`` is None where none limits the mass.
-    """
-
-    length: float
-    width: float
-    height: float
-    mass: float
-    crane: float | None = None
-
-    @property
-    def room(self) -> Vector:
-        """Length, width and height, mm."""
-        return self.length, self.width, self.height
-
-    @property
-    def load(self) -> float:
-        """The mass that both transport and crane carry, kg."""
-        return self.mass if self.crane is None else min(self.mass, self.crane)
 
 
 _FORM = re.compile(r"\s*[x\u00d7]\s*", re.IGNORECASE)

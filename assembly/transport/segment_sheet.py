@@ -7,10 +7,7 @@ from typing import TypeAlias
 from aag_cad.language import Figure, Language, say, says
 from aag_cad.parts.marks import parse_mark, short_mark
 from assembly.base.mark_ranges import joined_ranges
-from assembly.transport.lifting import Brace
-from assembly.transport.search import Limits
-from assembly.transport.segments import Segment, Segmentation
-from assembly.transport.splices import Splice
+from assembly.base.segments import Brace, Limits, Segment, Segmentation, Splice
 
 SEGMENTS_HEADER = (
     "segment", "shell", "geodesics", "parts", "plank_pieces", "mass_kg", "timber_kg", "steel_kg", "centre_x_mm",

@@ -1,8 +1,6 @@
 """The segments in which a gridshell travels: its shells, cut along geodesics if they must be (paper section 3.2)."""
 
-import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,66 +11,12 @@ from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Frame, Gridshell, Shell
 from aag_cad.parts.products import product_key
 from aag_cad.parts.quantities import material
-from aag_cad.units import Floats, Vector, vector
-from assembly.transport.cut_pieces import Divisible, PlankPiece, Run, cut_stops, divisible, run_between, run_splices
+from aag_cad.units import Floats, vector
+from assembly.base.segments import Limits, Pose, Segment, Segmentation, Splice
+from assembly.transport.cut_pieces import Divisible, Run, cut_stops, divisible, run_between, run_splices
 from assembly.transport.findings import cut_finding, hopeless_finding, lifting_finding, splice_finding, wish
-from assembly.transport.lifting import STIFF_GEODESICS, Brace, Lifting, braces, lifting_points, standing_props
-from assembly.transport.loading import Pose
-from assembly.transport.search import Limits, best_stops, pose_in, segment_ends
-from assembly.transport.splices import Splice
-
-_ROUNDING = 1e-9
-
-
-@dataclass(frozen=True)
-class Segment:
-    """What travels in one piece, without shoes, rods, blocks, cover and blades: those are fixed on site.
-
-    ``parts`` are the marks of whole parts, ``pieces`` what it has of cut planks. ``mass`` in kg, without bracing;
-    ``timber`` of it is timber; ``centre`` of gravity and the axes of ``pose`` are in vault coordinates, mm. ``over`` is
-    what length, width, height (mm) and mass (kg) exceed the transport by, negative where there is room. ``props`` are
-    the studs under which a segment of a cut shell is propped wherever it stands alone on its feet.
-    """
-
-    name: str
-    shell: str
-    geodesics: tuple[str, ...]
-    parts: tuple[str, ...]
-    pieces: tuple[PlankPiece, ...]
-    mass: float
-    timber: float
-    centre: Vector
-    pose: Pose
-    over: tuple[float, float, float, float]
-    lifting: Lifting
-    braces: tuple[Brace, ...]
-    props: tuple[str, ...]
-
-    @property
-    def fits(self) -> bool:
-        """Whether the segment fits the transport."""
-        return self.pose.filling <= 1.0 + _ROUNDING and self.over[3] <= 0.0
-
-    @property
-    def tilt(self) -> float:
-        """The angle by which the segment is turned over for transport, from standing as in the vault, radians."""
-        return math.acos(min(1.0, max(-1.0, self.pose.axes[2][2])))
-
-
-@dataclass(frozen=True)
-class Segmentation:
-    """How a gridshell is divided: segments, splices, and the fasteners put in on site because they join segments.
-
-    ``changes`` are warnings: what a shell that is cut would need to travel whole; ``problems`` are what must change
-    because it cannot be cut or spliced so (errors), or cannot be slung by three joints (warnings).
-    """
-
-    limits: Limits
-    segments: tuple[Segment, ...]
-    splices: tuple[Splice, ...]
-    site: tuple[str, ...]
-    changes: tuple[Finding, ...]
-    problems: tuple[Finding, ...]
+from assembly.transport.lifting import STIFF_GEODESICS, braces, lifting_points, standing_props
+from assembly.transport.search import best_stops, pose_in, segment_ends
 
 
 def _vault_pose(pose: Pose, placement: Frame) -> Pose:

@@ -8,63 +8,18 @@ grain. That they are kept does not prove the splice: its forces come from the st
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
 
 from aag_cad.mechanics.checks.fastener_spacing import bolt_distances
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Hole, Plank, Shell
+from assembly.base.segments import PlankCut, Splice
 from assembly.graph.cut_lines import Crossing, Track, Tracks
 
 PLAY = 2.0
 _ACROSS = 2
 _HEXAGON = 3.0**0.5
 _PLATE_END = 2.0
-
-
-@dataclass(frozen=True)
-class PlankCut:
-    """Where a plank is cut: station from its start, and how far off the nearest hole is that stays, mm."""
-
-    plank: str
-    station: float
-    clear: float
-
-
-@dataclass(frozen=True)
-class Splice:
-    """A cut beam or edge plank: cuts of its planks, and what joins it again on site; lengths in mm.
-
-    ``line`` is the geodesic along which the cut runs. A ``block`` lies in the gap of a beam, a ``plate`` on an edge
-    plank; ``bolts`` is the count of both sides, ``columns`` how many stand one behind the other on each side;
-    ``required`` is the least ``clear``; ``room`` how far a block may reach from the cut and ``reach`` how far it does;
-    ``left_out`` are the marks that it stands for.
-    """
-
-    member: str
-    line: str
-    joint: str
-    kind: Literal["block", "plate"]
-    cuts: tuple[PlankCut, ...]
-    required: float
-    length: float
-    columns: int
-    bolts: int
-    diameter: float
-    left_out: tuple[str, ...]
-    room: float = float("inf")
-    reach: float = 0.0
-
-    @property
-    def clear(self) -> float:
-        """The distance from its cuts to the nearest hole that stays, mm."""
-        return min(cut.clear for cut in self.cuts)
-
-    @property
-    def fits(self) -> bool:
-        """Whether bolts, cuts and holes keep their distances and the block has room."""
-        return self.clear >= self.required and self.room >= self.reach
 
 
 def _clear(holes: tuple[Hole, ...], station: float) -> float:

@@ -30,11 +30,11 @@ from aag_cad.parts.marks import parse_mark, short_mark
 from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.parts.products import product_key
 from aag_cad.units import Floats, Ints, Vector
+from assembly.base.segments import Segment, Segmentation
 from assembly.locking.model import GRAVITY
 from assembly.locking.order import SAG_LIMIT, SOFT, soft_mode_count
 from assembly.transport.frame import BracedFrame, braced_frame
 from assembly.transport.lifting import lifting_points, standing_props
-from assembly.transport.segments import Segment, Segmentation
 
 Way: TypeAlias = Literal["hung", "standing"]
 

@@ -17,7 +17,8 @@ from assembly.drawing.joint_sections import block_section_svg, node_section_svg
 from assembly.drawing.outline import ridge_outline, shell_outline, vault_outline
 from assembly.drawing.steel_sections import blade_section_svg, foot_section_svg, strap_section_svg
 from assembly.drawing.svg import Box, label_box, number, placed_labels, places_round
-from assembly.pictures.scenes import PAGE_WIDTH, Sheets, sheets_of, step_pictures
+from assembly.pictures.backgrounds import PAGE_WIDTH, Sheets, sheets_of
+from assembly.pictures.scenes import step_pictures
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.shape_control import control_figures, outer_end, sling_points
 

@@ -13,14 +13,14 @@ from aag_cad.language import LANGUAGES, Language, figure, language_of, say, says
 from aag_cad.parts.model import ClampingBar, Gridshell, Mullion, Plank, Shell, Strap, Strip, all_parts
 from aag_cad.parts.products import product_name
 from aag_cad.resources import template
+from assembly.base.locking_order import LockingOrder, LockingStep, Prop
 from assembly.base.names import part_name, phase_name
 from assembly.base.steps import DOWN_PHASES, PHASES, UP_PHASES, Phase, Plan
 from assembly.booklet.cards import qr_text, step_card, totals
 from assembly.booklet.gantt import gantt_svg
 from assembly.drawing.joint_sections import block_section_svg, node_section_svg
 from assembly.drawing.steel_sections import blade_section_svg, foot_section_svg, strap_section_svg
-from assembly.locking.model import Prop
-from assembly.locking.order import LockingOrder, LockingStep, locking_svg, locking_table, plot_words
+from assembly.pictures.locking_chart import locking_svg, locking_table
 from assembly.plan.assembly_plan import piece_weights, plan_of
 from assembly.plan.disassembly import disassembly_of
 from assembly.plan.schedule import schedule_of
@@ -270,7 +270,7 @@ def test_the_locking_order_prints_alike_in_both_languages() -> None:
     assert german["rows"][1][1] == "G-01, G-14"
     assert german["rows"][2][1] == "Bolzen fest, Stützen weg"
     assert {len(german["head"])} == {len(row) for row in german["rows"]}
-    words = svg_words(locking_svg(an_order(), plot_words("de")))
+    words = svg_words(locking_svg(an_order(), "de"))
     assert {"gehoben", "weich", "S1: weichste Eigenform und die nächsten", "0,5"} <= set(words)
     assert {"hoisted", "soft", "0.5"} <= set(svg_words(locking_svg(an_order())))
 

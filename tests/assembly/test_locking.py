@@ -16,23 +16,20 @@ from aag_cad.parts.model import Gridshell, Shell
 from aag_cad.pipeline import gridshell_of
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
+from assembly.base.locking_order import LockingOrder, frequency
 from assembly.locking.model import GRAVITY, LockingModel, locking_model, modes_of, sag_of
 from assembly.locking.order import (
-    LOCKING_HEADER,
     SAG_LIMIT,
-    LockingOrder,
     area_under,
     best_order,
     edge_groups,
-    frequency,
     greedy_order,
     locking_order,
     locking_orders,
-    locking_rows,
-    locking_svg,
     lowest_eigenvalue,
     soft_mode_count,
 )
+from assembly.pictures.locking_chart import LOCKING_HEADER, locking_rows, locking_svg
 
 BAY = 300.0
 

@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 from aag_cad.design import design_text, parse_design
 from aag_cad.parts.model import all_parts
 from aag_cad.pipeline import gridshell_of
+from assembly.base.segments import Limits
 from assembly.checks.disassembly import check_disassembly
 from assembly.checks.plan import check_plan
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.planned import planned_of
 from assembly.plan.schedule import people_curve
-from assembly.transport.search import Limits
 
 TEXT, _ = design_text("vault")
 

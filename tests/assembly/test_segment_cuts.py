@@ -13,10 +13,11 @@ from scipy.spatial.transform import Rotation
 
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
+from assembly.base.segments import Limits
 from assembly.transport.graph_groups import partition_graph
 from assembly.transport.loading import best_pose, turned_rectangle
 from assembly.transport.partition import Cuts, best_chain, best_ring
-from assembly.transport.search import Limits, furthest
+from assembly.transport.search import furthest
 
 Weigh = Callable[[int, int], int | None]
 

@@ -8,8 +8,8 @@ import pytest
 
 from aag_cad.language import LANGUAGES, Language
 from aag_cad.parts.model import Gridshell
+from assembly.base.segments import Limits, Segmentation
 from assembly.pictures.segment_picture import segment_svg
-from assembly.transport.search import Limits
 from assembly.transport.segment_sheet import (
     SEGMENTS_HEADER,
     SPLICES_HEADER,
@@ -19,7 +19,7 @@ from assembly.transport.segment_sheet import (
     splice_rows,
     splices_of,
 )
-from assembly.transport.segments import Segmentation, segments
+from assembly.transport.segments import segments
 
 LORRY = Limits(12000.0, 2400.0, 2600.0, 3000.0)
 SVG = "{http://www.w3.org/2000/svg}"

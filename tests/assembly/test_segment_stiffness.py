@@ -13,12 +13,11 @@ from aag_cad.mechanics.frame.system import against_unknowns, frame_system, full_
 from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.units import Floats, Vector, vector
 from assembly.base.errors import PlanError
+from assembly.base.segments import Brace, Limits, Segment, Segmentation
 from assembly.locking.model import GRAVITY
 from assembly.locking.order import SAG_LIMIT
 from assembly.transport.frame import braced_frame, segment_shell
-from assembly.transport.lifting import Brace
-from assembly.transport.search import Limits
-from assembly.transport.segments import Segment, Segmentation, segments
+from assembly.transport.segments import segments
 from assembly.transport.stiffness import (
     SLING,
     SegmentHold,

@@ -21,11 +21,12 @@ from aag_cad.parts.model import Gridshell, shell_parts
 from aag_cad.parts.quantities import mass
 from aag_cad.pipeline import gridshell_of
 from assembly.base.errors import PlanError
+from assembly.base.segments import Limits, Segmentation
 from assembly.transport.cut_pieces import Divisible, divisible, run_between, run_splices
 from assembly.transport.findings import splice_finding
 from assembly.transport.loading import best_pose, hull_points
-from assembly.transport.search import Limits, best_stops, limits_from
-from assembly.transport.segments import Segmentation, segment_findings, segments
+from assembly.transport.search import best_stops, limits_from
+from assembly.transport.segments import segment_findings, segments
 
 LORRY = Limits(12000.0, 2400.0, 2600.0, 3000.0)
 NARROW = Limits(12000.0, 2400.0, 2400.0, 3000.0)

@@ -12,6 +12,7 @@ from pypdf import PdfReader
 from aag_cad.design import Design
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Part, all_parts
+from assembly.base.segments import Limits
 from assembly.base.steps import Plan, Step
 from assembly.booklet.cards import part_rows, step_card, step_table, totals
 from assembly.booklet.contents import common_of, disassembly_booklet, sequence_booklet
@@ -20,7 +21,6 @@ from assembly.plan.assembly_plan import piece_weights, plan_of
 from assembly.plan.durations import step_minutes
 from assembly.plan.planned import Planned
 from assembly.plan.schedule import schedule_of
-from assembly.transport.search import Limits
 from assembly.transport.segments import segments
 
 # Cover, how a shell is made, map of marks, map of blocks, list of steps, laying plan, its coordinates, schedule.

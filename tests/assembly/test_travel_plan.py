@@ -12,10 +12,12 @@ from damage import changed, moved, without
 from aag_cad.design import Design, load_design
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.pipeline import gridshell_of
+from assembly.base.locking_order import LockingOrder
+from assembly.base.segments import Limits, Segmentation
 from assembly.base.steps import Plan, Step
 from assembly.checks.disassembly import check_disassembly
 from assembly.checks.plan import check_plan
-from assembly.locking.order import LockingOrder, locking_orders
+from assembly.locking.order import locking_orders
 from assembly.plan.assembly_plan import lifted, piece_weights, plan_of
 from assembly.plan.disassembly import disassembly_of
 from assembly.plan.durations import step_minutes
@@ -24,8 +26,7 @@ from assembly.plan.schedule import schedule_of
 from assembly.plan.site_work import site_works
 from assembly.transport.lifting import margin_inside
 from assembly.transport.seams import seams, standing_order
-from assembly.transport.search import Limits
-from assembly.transport.segments import Segmentation, segments
+from assembly.transport.segments import segments
 
 LORRY = Limits(12000.0, 2400.0, 2600.0, 3000.0)
 NARROW = Limits(12000.0, 2400.0, 2400.0, 3000.0)

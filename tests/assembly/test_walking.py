@@ -10,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from aag_cad.units import Floats
+from assembly.base.shell_axes import best_plane
 from assembly.laying.footpath import shorter_path
 from assembly.laying.walking import (
     STACK_MARGIN,
     STACK_PACE,
     Line,
     alternated,
-    best_plane,
     best_stack,
     path_length,
     serpentine,

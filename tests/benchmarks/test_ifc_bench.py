@@ -14,8 +14,8 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from aag_cad.export.cad.gltf import write_glb
-from aag_cad.export.ifc.model import IfcOptions, write_ifc
-from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcSchema
+from aag_cad.export.ifc.model import write_ifc
+from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcOptions, IfcSchema
 from aag_cad.parts.model import Gridshell, Shell, all_parts
 from aag_cad.parts.quantities import gross_volume
 from aag_cad.parts.store import gridshell_json, read_gridshell

@@ -15,11 +15,12 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from aag_cad.design import design_text, load_design, parse_design
 from aag_cad.pipeline import gridshell_of
 from aag_cad.units import Vector
+from assembly.checks.graph_plan import check_graph_plan
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import interlacing
 from assembly.laying.order import FlatOrder, flat_order_of
 from assembly.locking.order import locking_orders
-from assembly.plan.graph_plan import check_graph_plan, graph_plan
+from assembly.plan.graph_plan import graph_plan
 from assembly.plan.planned import limits_of, planned_of
 
 SPACING = 500.0

@@ -16,8 +16,8 @@ from aag_cad.errors import DesignError, FileError, NetworkError
 from aag_cad.export.ifc.frame import TIMESTAMP
 from aag_cad.export.ifc.joints import joint_sides
 from aag_cad.export.ifc.kinds import IFC_KINDS, colour
-from aag_cad.export.ifc.model import IfcOptions, write_ifc
-from aag_cad.export.ifc.options import IfcGeometry, IfcSchema, view_definition
+from aag_cad.export.ifc.model import write_ifc
+from aag_cad.export.ifc.options import IfcGeometry, IfcOptions, IfcSchema, view_definition
 from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Footing, Gridshell, Joint, Part, Shell, all_joints, all_parts, shell_parts

@@ -17,8 +17,8 @@ import pytest
 from test_ifc_sample import sampled, sampled_steps
 
 from aag_cad.design import load_design
-from aag_cad.export.ifc.model import IfcOptions, ifc_model, write_ifc
-from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcSchema
+from aag_cad.export.ifc.model import ifc_model, write_ifc
+from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcOptions, IfcSchema
 from aag_cad.export.ifc.schemas import attributes_of
 from aag_cad.parts.model import Gridshell
 from aag_cad.pipeline import gridshell_of

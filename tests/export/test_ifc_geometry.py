@@ -12,9 +12,9 @@ import pytest
 from test_ifc_sample import sampled
 
 from aag_cad.export.ifc.bodies import welded
-from aag_cad.export.ifc.brep import corner_splines
-from aag_cad.export.ifc.model import IfcOptions, ifc_model, write_ifc
-from aag_cad.parts.forming import formed_points
+from aag_cad.export.ifc.model import ifc_model, write_ifc
+from aag_cad.export.ifc.options import IfcOptions
+from aag_cad.parts.forming import corner_splines, formed_points
 from aag_cad.parts.mesh import frame_matrix, shell_mesh
 from aag_cad.parts.model import Bolt, Gridshell, Part, Plank, Rod, Screw, Shell, all_parts, shell_parts
 from aag_cad.parts.quantities import gross_volume

@@ -8,8 +8,8 @@ import pytest
 from ifctester import ids
 from test_ifc_sample import sampled, sampled_steps
 
-from aag_cad.export.ifc.model import IfcOptions, write_ifc
-from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcSchema
+from aag_cad.export.ifc.model import write_ifc
+from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcOptions, IfcSchema
 from aag_cad.parts.model import Gridshell
 from aag_cad.resources import template
 

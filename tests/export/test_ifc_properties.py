@@ -11,7 +11,8 @@ import pytest
 from test_ifc_sample import sampled, sampled_steps
 
 from aag_cad.export.ifc.assembly_sets import segment_of
-from aag_cad.export.ifc.model import IfcOptions, ifc_model
+from aag_cad.export.ifc.model import ifc_model
+from aag_cad.export.ifc.options import IfcOptions
 from aag_cad.export.ifc.properties import hole_text
 from aag_cad.parts.model import Footing, Gridshell, Hole, Part, Plank, Rod, Strip, all_parts
 from aag_cad.parts.quantities import largest_twist, mass, material_name, smallest_radius

@@ -12,11 +12,12 @@ from test_ifc_sample import sampled, sampled_steps
 
 from aag_cad.design import Design
 from aag_cad.errors import DesignError
-from aag_cad.export.ifc.model import IfcOptions, ifc_model
+from aag_cad.export.ifc.model import ifc_model
+from aag_cad.export.ifc.options import IfcOptions
 from aag_cad.export.ifc.schedule import scheduled
 from aag_cad.export.ifc.tasks import Timing, WorkingTime, timings
 from aag_cad.parts.model import Gridshell, all_parts
-from assembly.plan.assembly_plan import Plan, Step
+from assembly.base.steps import Plan, Step
 from assembly.plan.schedule import critical_path
 
 FIRST = datetime(2000, 1, 1, 9)

@@ -24,7 +24,8 @@ from OCP.XCAFDoc import XCAFDoc_ShapeTool
 
 from aag_cad.design import Design
 from aag_cad.errors import FileError, SolidError
-from aag_cad.export.cad.step import Header, write_step
+from aag_cad.export.cad.step import write_step
+from aag_cad.export.cad.step_text import Header
 from aag_cad.export.ifc.kinds import colour
 from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import placed, shell_mesh

@@ -12,19 +12,20 @@ from aag_cad.design_making import Crew
 from aag_cad.export.office.tables import write_locking_table, write_segment_tables
 from aag_cad.files import csv_text, write_text
 from aag_cad.parts.model import Gridshell
+from assembly.base.segments import Limits
+from assembly.base.steps import Plan
 from assembly.booklet.calendar import write_calendar
 from assembly.booklet.gantt import gantt_svg
 from assembly.booklet.graph_page import graph_html
 from assembly.booklet.pdf import write_booklets
 from assembly.graph.files import graph_json, graphml
 from assembly.graph.gridshell_graph import assembly_graph
-from assembly.locking.order import locking_svg, plot_words
 from assembly.pictures.laying_plan import laying_rows
-from assembly.plan.assembly_plan import Plan, plan_json
+from assembly.pictures.locking_chart import locking_svg
+from assembly.plan.assembly_plan import plan_json
 from assembly.plan.planned import Planned
 from assembly.plan.schedule import Schedule, schedule_csv
 from assembly.transport.graph_groups import partition_graph
-from assembly.transport.search import Limits
 
 LAYING_HEADER = ("shell", "mark", "what", "x_mm", "y_mm", "end_x_mm", "end_y_mm")
 GROUPS_HEADER = ("segment", "parts", "mass_kg", "marks")
@@ -69,7 +70,7 @@ def _write_schedule(planning: Planning, folder: Path) -> None:
 def _write_locking(planning: Planning, folder: Path) -> None:
     orders = planning.planned.locking
     write_locking_table(orders, folder / "tables" / "locking.csv")
-    write_text(folder / "locking.svg", locking_svg(orders[0], plot_words(planning.planned.plan.language)))
+    write_text(folder / "locking.svg", locking_svg(orders[0], planning.planned.plan.language))
 
 
 def _write_segments(planning: Planning, folder: Path) -> None:

@@ -21,7 +21,7 @@ from aag_cad.shop.purchases import Purchases, stock_summary
 from aag_cad.shop.weights import PAPER_ROOF_KG_PER_M2, PAPER_ROOF_M2, roof_weight, shell_weights
 from aag_cad.units import MM2_PER_M2, deg_per_m
 from aag_cad.web.quality import WebQuality
-from assembly.plan.assembly_plan import Plan
+from assembly.base.steps import Plan
 
 
 def counts(gridshell: Gridshell) -> dict[str, int]:

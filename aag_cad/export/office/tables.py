@@ -11,9 +11,10 @@ from aag_cad.parts.model import Gridshell, Part, Plank, Timber, all_parts
 from aag_cad.parts.products import product_name
 from aag_cad.parts.quantities import hole_count, kind, largest_twist, mass, material_name, sizes, smallest_radius
 from aag_cad.units import deg_per_m
-from assembly.locking.order import LOCKING_HEADER, LockingOrder, locking_rows
+from assembly.base.locking_order import LockingOrder
+from assembly.base.segments import Segmentation
+from assembly.pictures.locking_chart import LOCKING_HEADER, locking_rows
 from assembly.transport.segment_sheet import SEGMENTS_HEADER, SPLICES_HEADER, segment_rows, splice_rows
-from assembly.transport.segments import Segmentation
 
 PARTS_HEADER = (
     "mark", "kind", "product", "family", "shell", "beam", "length_mm", "width_mm", "thickness_mm", "holes",
