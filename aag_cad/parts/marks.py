@@ -8,7 +8,7 @@ mark of its joint.
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from aag_cad.errors import MarkError
 
@@ -81,6 +81,12 @@ def shells_of(text: str) -> tuple[str, ...]:
     return (f"S{mark.shell}",) if mark.shell else tuple(f"S{number}" for number in mark.family[1:])
 
 
+def family_mark(text: str) -> str:
+    """Return shell and family of a part, as S1-G."""
+    mark = parse_mark(text)
+    return f"S{mark.shell}-{mark.family}"
+
+
 def is_in_shell(text: str, shell: str) -> bool:
     """Return whether a mark is that of a shell or of something in it."""
     return text == shell or text.startswith(f"{shell}-")
@@ -123,6 +129,11 @@ def number_of(text: str) -> str:
 def part_mark(whole: str | Mark, part: str) -> str:
     """Return the mark of a plank (L, R) of a beam or of a fastener (B1, W1, T1) of a joint."""
     return f"{whole}-{part}"
+
+
+def whole_of(text: str) -> str:
+    """Return the mark of the beam or joint that a plank or fastener belongs to, of all else its own."""
+    return str(replace(parse_mark(text), part=""))
 
 
 def joint_of(text: str) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from aag_cad.language import Language, figure, say, says, words_table
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import joint_of, parse_mark, shell_of, short_mark
+from aag_cad.parts.marks import joint_of, parse_mark, shell_of, short_mark, whole_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Bolt, Gridshell, Part, Plank, Rod, Screw, Shell, all_parts, shell_parts
 from assembly.base.mark_ranges import joined_ranges, mark_ranges
@@ -88,7 +88,7 @@ def _beam_table(shell: Shell, step: Step, weights: Weights, language: Language) 
 
 def _laid_table(step: Step, weights: Weights, plan: Plan) -> dict[str, Any]:
     language = plan.language
-    made = {mark.rsplit("-", 1)[0]: s.number for s in plan.steps if s.phase == "prefabricate" for mark in s.marks}
+    made = {whole_of(mark): s.number for s in plan.steps if s.phase == "prefabricate" for mark in s.marks}
     rows = []
     for unit in (*step.assemblies, *step.marks):
         mass, length = weights[unit]

@@ -8,6 +8,7 @@ from typing import Any, Literal, TypeAlias
 from aag_cad.findings import worst_first
 from aag_cad.language import Language
 from aag_cad.parts.index import index_of
+from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell
 from assembly.base.steps import Plan, Step
 from assembly.booklet.cards import Weights, step_card, totals
@@ -94,7 +95,9 @@ def _alone(step: Step) -> str:
 
 def _caption(step: Step) -> str:
     """Return the key of the caption of a step's pictures, by its phase and by what there is to see."""
-    if step.phase in ("edge planks", "pull edge planks") and not any("-R-" in mark for mark in step.marks):
+    if step.phase in ("edge planks", "pull edge planks") and not any(
+        parse_mark(mark).family == "R" for mark in step.marks
+    ):
         return f"{step.phase} alone"
     if step.phase == "stand" and step.id != f"site.stand.{step.assemblies[0]}":
         return "stand segment"

@@ -9,6 +9,7 @@ import networkx as nx
 import numpy as np
 
 from aag_cad.parts.index import index_of
+from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Bolt, Gridshell, Joint, Part, Shell, all_joints
 from aag_cad.units import Floats
 from assembly.base.steps import Plan, Step
@@ -92,10 +93,10 @@ def _fastened(gridshell: Gridshell, leaves: dict[str, _Place], lying: dict[str, 
     """
     for joint in (joint for joint in all_joints(gridshell) if joint.kind not in ("AA", "footing")):
         for fastener, member in product(joint.fasteners, joint.members):
-            block_bolt = joint.kind in ("AG", "boundary") and "-B" in fastener
+            block_bolt = joint.kind in ("AG", "boundary") and parse_mark(fastener).letter == "B"
             then = leaves.get(member) if block_bolt else lying.get(member, leaves.get(member))
             # A block bolt holds block and planks of its beam; the flat plank on the block is held by the screw.
-            if block_bolt and member.count("-") == 2 and member in lying:
+            if block_bolt and not parse_mark(member).part and member in lying:
                 continue
             if fastener in leaves and then is not None:
                 yield f"{fastener} holds {member}", leaves[fastener], then

@@ -49,12 +49,11 @@ def _places(plan: Plan, gridshell: Gridshell) -> dict[str, tuple[Step, int]]:
     Planks and blocks of a beam come in when the beam is laid.
     """
     places = {mark: (step, i) for step in plan.steps for i, mark in enumerate(step.marks)}
+    beams = index_of(gridshell).beams
     for step in plan.steps:
-        places |= {mark: (step, i) for i, mark in enumerate(step.assemblies) if mark.count("-") == 2}
-    for shell in gridshell.shells:
-        for beam in shell.beams:
-            if beam.mark in places:
-                places |= {plank: places[beam.mark] for plank in beam.planks if plank in places}
+        places |= {mark: (step, i) for i, mark in enumerate(step.assemblies) if mark in beams}
+    for mark in (mark for mark in beams if mark in places):
+        places |= {plank: places[mark] for plank in beams[mark].planks if plank in places}
     return places
 
 

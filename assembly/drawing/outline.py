@@ -1,7 +1,6 @@
 """Shells as they lie on a sheet: outlines of their planks and places of their joints, y down."""
 
-import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,11 +49,16 @@ def _group(shell: Shell, matrix: Floats, drawn: tuple[type[Part], ...]) -> _Grou
 
 
 def _outline(
-    groups: Sequence[_Group], view: View, width: float, margin: float, around: Sequence[Vector] = (), only: str = ""
+    groups: Sequence[_Group],
+    view: View,
+    width: float,
+    margin: float,
+    around: Sequence[Vector] = (),
+    only: Collection[str] = (),
 ) -> Outline:
     """Return groups in a view on a sheet of a given width, with a margin all round.
 
-    The sheet holds all parts and the points ``around``; or only the parts whose marks match the pattern ``only``.
+    The sheet holds all parts and the points ``around``; or only the parts ``only``, by their marks.
     """
 
     def on_sheet(matrix: Floats) -> Flat:
@@ -66,7 +70,7 @@ def _outline(
 
     seen = {part.mark: piece_outline(part, on_sheet(group.matrix)) for group in groups for part in group.parts}
     joints = {j.mark: on_sheet(group.matrix)(np.array([j.point]))[0] for group in groups for j in group.joints}
-    held = [outline for mark, (outline, _) in seen.items() if re.match(only, mark)]
+    held = [outline for mark, (outline, _) in seen.items() if not only or mark in only]
     corners = np.concatenate([*held, *(on_sheet(np.eye(4))(np.array([point])) for point in around)])
     low, high = corners.min(axis=0), corners.max(axis=0)
     scale = (width - 2.0 * margin) / float(high[0] - low[0])
@@ -124,5 +128,4 @@ def ridge_outline(gridshell: Gridshell, pair: Sequence[str], width: float, margi
     along = unit((side - crown) * [1.0, 1.0, 0.0])
     up = np.array([0.0, 0.0, 1.0])
     view = View(np.array([along, np.cross(up, along), up]))
-    only = "|".join(re.escape(mark) for mark in pair)
-    return _outline(_placed(gridshell, (Blade,)), view, width, margin, only=rf"({only})$")
+    return _outline(_placed(gridshell, (Blade,)), view, width, margin, only=pair)

@@ -9,6 +9,7 @@ import networkx as nx
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from shipped_weaves import circle_graph, kagome_graph
 
 from aag_cad.errors import FileError
 from aag_cad.parts.model import Gridshell
@@ -27,7 +28,6 @@ from assembly.graph.files import (
 )
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import interlacing
-from assembly.graph.weaves import circle_graph, kagome_graph
 
 Graph = nx.MultiGraph
 

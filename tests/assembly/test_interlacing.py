@@ -6,6 +6,7 @@ from itertools import pairwise
 import networkx as nx
 import numpy as np
 import pytest
+from shipped_weaves import circle_graph, kagome_graph
 from weaving import Graph, Weave, flat, graph_of, square, walls
 
 from aag_cad.language import printed
@@ -15,7 +16,6 @@ from assembly.graph.files import graph_text, read_graph
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import Interlacing, Slide, interlacing, refuse_left_out
 from assembly.graph.sliding import bend_radius, free_way
-from assembly.graph.weaves import circle_graph, kagome_graph
 
 
 def test_what_is_said_of_a_crossing_counts_more_than_the_layers() -> None:

@@ -11,7 +11,7 @@ from xml.sax.saxutils import escape, unescape
 from aag_cad import __version__
 from aag_cad.errors import FileError
 from aag_cad.files import write_bytes
-from aag_cad.parts.marks import shell_of
+from aag_cad.parts.marks import family_mark, shell_of
 from aag_cad.parts.model import Gridshell, Hole, Plank
 from aag_cad.parts.quantities import mass
 from aag_cad.shop.passports import clear_stretches
@@ -178,15 +178,14 @@ def _mended(text: str, tag: str, changed: Mapping[str, str | None]) -> str:
 
 def _part_attributes(plank: Plank, number: int, gridshell: Gridshell) -> dict[str, str]:
     """Return how a part is named, numbered and grouped: by shell and family, and with its sibling in a beam."""
-    shell = shell_of(plank.mark)
     return {
         "SingleMemberNumber": str(number),
         "OrderNumber": str(number),
         "AssemblyNumber": plank.beam or plank.mark,
         "ElementNumber": plank.beam or plank.mark,
         "Designation": plank.mark,
-        "Group": shell,
-        "Package": f"{shell}-{plank.family}",
+        "Group": shell_of(plank.mark),
+        "Package": family_mark(plank.mark),
         "Layer": str(plank.layer),
         "Material": gridshell.timber.species,
         "TimberGrade": gridshell.timber.strength_class,
