@@ -9,6 +9,7 @@ mark of its joint.
 
 import re
 from dataclasses import dataclass, replace
+from functools import cache
 
 from aag_cad.errors import MarkError
 
@@ -50,6 +51,7 @@ class Mark:
         return text + (f"-{self.part}" if self.part else "")
 
 
+@cache
 def parse_mark(text: str) -> Mark:
     """Return the parsed mark; MarkError if the text is not one, or not printed as we print it."""
     if blade := _BLADE.fullmatch(text):

@@ -13,6 +13,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from aag_cad.errors import DesignError
+from aag_cad.once import once
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Blank, EndCut, Gridshell, Plank
 from aag_cad.units import Floats
@@ -188,6 +189,12 @@ def drill_groups(planks: Iterable[Plank], stack_limit: int = STACK_LIMIT) -> tup
 def all_planks(gridshell: Gridshell) -> tuple[Plank, ...]:
     """Return the planks of all shells."""
     return tuple(plank for shell in gridshell.shells for plank in shell.planks)
+
+
+@once
+def templates_of(gridshell: Gridshell) -> tuple[DrillGroup, ...]:
+    """Return the drilling groups of all planks of a gridshell."""
+    return drill_groups(all_planks(gridshell))
 
 
 def drawn_face(plank: Plank) -> str:

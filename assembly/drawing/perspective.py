@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from aag_cad.geometry.surface import unit
+from aag_cad.once import once
 from aag_cad.parts.model import Gridshell
 from aag_cad.units import Floats
 from assembly.drawing.faces import Faces, gridshell_faces, picture_spacing, placed_points
@@ -19,6 +20,10 @@ SHADOW = Style("#dedad1")
 FOOT_LINE = Style("none", "#8f887b", 2.5, "9 6")
 FIGURE = Style("#9d978e")
 
+# Where the picture is taken from and where the sun stands: round the vertical from the middle of an entry, and above
+# the ground; the distance is in widths of the gridshell.
+_AZIMUTH_DEG, _ELEVATION_DEG, _DISTANCE = 31.0, 23.0, 1.5
+_SUN_AZIMUTH_DEG, _SUN_ELEVATION_DEG = -40.0, 66.0
 _MARGIN = 30.0
 _FAR_FADE = 0.3
 _EDGE = 0.7
@@ -32,20 +37,6 @@ _BODY = ((12, 0), (112, 0), (118, 25), (86, 70), (98, 300), (94, 470), (130, 760
          (184, 1400), (150, 1455), (68, 1492), (50, 1520), (50, 1590))  # fmt: skip
 _ARM = ((140, 1455), (190, 1430), (224, 1360), (240, 1150), (262, 960), (264, 860), (242, 790), (216, 800), (214, 880),
         (202, 960), (182, 1130), (160, 1290))  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Camera:
-    """Where the picture is taken from and where the sun stands: degrees round the vertical and above the ground.
-
-    Azimuths count from the middle of an entry; ``distance`` is in widths of the gridshell.
-    """
-
-    azimuth_deg: float = 31.0
-    elevation_deg: float = 23.0
-    distance: float = 1.5
-    sun_azimuth_deg: float = -40.0
-    sun_elevation_deg: float = 66.0
 
 
 def _direction(azimuth: float, elevation_deg: float) -> Floats:
@@ -79,16 +70,16 @@ class Projection:
         return flat * self.scale + self.shift, depth
 
 
-def _projection(points: Floats, back: Floats, distance: float, width: float) -> tuple[Projection, float]:
-    """Return the projection that fills a sheet of a given width with points (n, 3), and the sheet's height."""
+def _projection(points: Floats, back: Floats) -> tuple[Projection, float]:
+    """Return the projection that fills the width of the sheet with points (n, 3), and the sheet's height."""
     right = unit(np.cross(np.array([0.0, 0.0, 1.0]), back))
     axes = np.array([right, np.cross(back, right), back])
     middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
-    away = distance * float(np.ptp(points[:, :2], axis=0).max())
+    away = _DISTANCE * float(np.ptp(points[:, :2], axis=0).max())
     raw = Projection(middle + away * back, axes, 1.0, np.zeros(2))
     flat, _ = raw(points)
     low, high = flat.min(axis=0), flat.max(axis=0)
-    scale = (width - 2.0 * _MARGIN) / float(high[0] - low[0])
+    scale = (WIDTH - 2.0 * _MARGIN) / float(high[0] - low[0])
     height = float(high[1] - low[1]) * scale + 2.0 * _MARGIN
     return Projection(raw.eye, axes, scale, _MARGIN - low * scale), height
 
@@ -177,21 +168,24 @@ def _relative(points: Floats) -> list[str]:
     ]
 
 
-def perspective_svg(
-    gridshell: Gridshell, camera: Camera | None = None, width: float = WIDTH, background: str = "none"
-) -> str:
-    """Return a picture of the whole gridshell on its ground with a person in an entry, ``width`` sheet units wide."""
-    view, entry = camera or Camera(), _entry(gridshell)
-    azimuth = entry + math.radians(view.azimuth_deg)
-    sun = _direction(azimuth + math.radians(view.sun_azimuth_deg), view.sun_elevation_deg)
+@once
+def _picture(gridshell: Gridshell) -> tuple[float, tuple[str, ...]]:
+    """Return the height of the picture and what is drawn on it."""
+    entry = _entry(gridshell)
+    azimuth = entry + math.radians(_AZIMUTH_DEG)
+    sun = _direction(azimuth + math.radians(_SUN_AZIMUTH_DEG), _SUN_ELEVATION_DEG)
     faces = gridshell_faces(gridshell)
     points = faces.corners.reshape(-1, 3)
     shadows = _shadow(points, gridshell.ground, sun)
-    back = _direction(azimuth, view.elevation_deg)
-    project, height = _projection(np.concatenate([points, shadows]), back, view.distance, width)
+    project, height = _projection(np.concatenate([points, shadows]), _direction(azimuth, _ELEVATION_DEG))
     reach = float(np.linalg.norm(points[:, :2], axis=1).max())
     place = _FIGURE_REACH * reach * _direction(entry + _FIGURE_TURN, 0.0) + np.array([0.0, 0.0, gridshell.ground])
-    sheet = np.array([(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)])
     tenths = f'<g transform="scale(.1)" stroke-width="{_EDGE_WIDTH:g}">{"".join(_face_items(faces, project, sun))}</g>'
-    items = [*_ground_items(gridshell, project, sun), *_figure_items(place, project, sun), tenths]
-    return svg(width, height, [polygon(sheet, Style(background)) if background != "none" else "", *items])
+    return height, (*_ground_items(gridshell, project, sun), *_figure_items(place, project, sun), tenths)
+
+
+def perspective_svg(gridshell: Gridshell, background: str = "none") -> str:
+    """Return a picture of the whole gridshell on its ground with a person in an entry, ``WIDTH`` sheet units wide."""
+    height, items = _picture(gridshell)
+    sheet = np.array([(0.0, 0.0), (WIDTH, 0.0), (WIDTH, height), (0.0, height)])
+    return svg(WIDTH, height, [polygon(sheet, Style(background)) if background != "none" else "", *items])

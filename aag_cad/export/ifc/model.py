@@ -30,7 +30,7 @@ from aag_cad.parts.model import (
     shell_parts,
 )
 from aag_cad.parts.products import part_frame
-from aag_cad.shop.groups import all_planks, drill_groups
+from aag_cad.shop.groups import all_planks, templates_of
 from assembly.base.steps import Step
 
 __all__ = ["IfcOptions", "IfcSchema", "ifc_model", "write_ifc"]
@@ -105,7 +105,7 @@ def _write_sets(
 ) -> None:
     """Write the property and quantity sets of all parts."""
     planks, timber = all_planks(gridshell), gridshell.timber
-    groups = {member.mark: group.mark for group in drill_groups(planks) for member in group.members}
+    groups = {member.mark: group.mark for group in templates_of(gridshell) for member in group.members}
     for product in found:
         write_product_sets(model, product.key, product.parts, elements, timber)
     write_fabrication(model, [(product.key, product.parts) for product in found], elements, timber, groups)

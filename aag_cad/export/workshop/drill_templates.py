@@ -23,7 +23,7 @@ from aag_cad.export.workshop.blank_drawings import (
 )
 from aag_cad.files import write_bytes
 from aag_cad.parts.model import Blank, Gridshell, Hole, Timber
-from aag_cad.shop.groups import DrillGroup, all_planks, drawn_face, drill_groups, drilled_joints
+from aag_cad.shop.groups import DrillGroup, all_planks, drawn_face, drilled_joints, templates_of
 from aag_cad.typesetting import printout_pdf
 from aag_cad.units import MM_PER_M
 
@@ -190,7 +190,7 @@ def templates_data(gridshell: Gridshell, paper: PaperName) -> dict[str, Any]:
         "check": CHECK_LENGTH,
         "templates": [
             _sheets(group, drilled_joints(group, planks), chosen, gridshell.title, gridshell.timber)
-            for group in drill_groups(planks)
+            for group in templates_of(gridshell)
         ],
     }
 

@@ -22,7 +22,7 @@ from aag_cad.export.workshop.blank_drawings import (
 )
 from aag_cad.files import write_bytes
 from aag_cad.parts.model import Gridshell
-from aag_cad.shop.groups import all_planks, drill_groups, drilled_joints
+from aag_cad.shop.groups import all_planks, drilled_joints, templates_of
 
 _ALIGN = {
     "left": TextEntityAlignment.MIDDLE_LEFT,
@@ -98,6 +98,6 @@ def write_blank_dxfs(gridshell: Gridshell, folder: str | os.PathLike[str]) -> No
     FileError if a file cannot be written.
     """
     planks = all_planks(gridshell)
-    for group in drill_groups(planks):
+    for group in templates_of(gridshell):
         drawing = blank_drawing(group, drilled_joints(group, planks), gridshell.title, gridshell.timber)
         write_bytes(Path(folder) / f"{group.mark}.dxf", dxf_bytes(drawing))

@@ -4,7 +4,6 @@ Two by seven on A4, each 99.1 x 38.1 mm, a common sheet. The picture of a blank 
 """
 
 import os
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from aag_cad.files import write_bytes
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.model import Beam, Gridshell, Plank, Shell
-from aag_cad.shop.groups import DrillGroup, all_planks, drawn_face, drill_groups
+from aag_cad.shop.groups import DrillGroup, drawn_face, templates_of
 from aag_cad.typesetting import printout_pdf
 from aag_cad.units import Floats
 from assembly.booklet.qr import qr_svg
@@ -105,10 +104,6 @@ def _beam_label(gridshell: Gridshell, beam: Beam, outline: Outline) -> dict[str,
     }
 
 
-def _group_of(groups: Iterable[DrillGroup]) -> dict[str, DrillGroup]:
-    return {member.mark: group for group in groups for member in group.members}
-
-
 def _mark(label: dict[str, Any]) -> str:
     return str(label["mark"])
 
@@ -116,7 +111,7 @@ def _mark(label: dict[str, Any]) -> str:
 def labels_data(gridshell: Gridshell) -> dict[str, Any]:
     """Return the data that the labels are made from: first all planks, then all beams, each sorted by mark."""
     outlines = {shell.mark: _key_outline(shell) for shell in gridshell.shells}
-    group_of = _group_of(drill_groups(all_planks(gridshell)))
+    group_of = {member.mark: group for group in templates_of(gridshell) for member in group.members}
     planks, beams = [], []
     for shell in gridshell.shells:
         outline = outlines[shell.mark]
