@@ -160,9 +160,7 @@ def angle_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
 
 def boundary_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     """Yield AAG702: boundary planks along a curve that is no geodesic, so that no straight plank lies on it."""
-    for plank in _planks(gridshell):
-        if plank.family != "E":
-            continue
+    for plank in index_of(gridshell).edges.values():
         bow = lamella_stress(plank, gridshell.timber).bow
         if bow > BOW:
             what = "the boundary is no geodesic; unrolled, the plank leaves its chord by"

@@ -9,12 +9,13 @@ import numpy as np
 from aag_cad.design import Design
 from aag_cad.design_sections import LevelShells
 from aag_cad.errors import NetworkError
+from aag_cad.families import BEAMS
 from aag_cad.geometry.framed import FramedCurve, framed_curve, nearest_station
 from aag_cad.geometry.surface import Chart, unit_normals
 from aag_cad.network.crop import kept_crossings, trimmed_curves
 from aag_cad.network.edges import EdgeLine, edge_at, level_edges, level_region, ridge_boundary
 from aag_cad.network.lines import ChartLine, Region, asymptotic_lines, crossings_of, geodesic_lines
-from aag_cad.network.model import LEFT_RIDGE, RIGHT_RIDGE, Crossing, CrossingKind, CurveId, CurveNetwork, Family
+from aag_cad.network.model import LEFT_RIDGE, RIGHT_RIDGE, Crossing, CrossingKind, CurveId, CurveNetwork
 from aag_cad.network.ridge import ridge_distance, surface_points
 from aag_cad.units import Floats, vector
 
@@ -82,10 +83,9 @@ def _beams(design: Design, chart: Chart, region: Region) -> tuple[list[ChartLine
             f"a smaller min_nodes, pattern.node_clearance_foot ({design.pattern.node_clearance_foot:g} mm) or "
             f"pattern.node_clearance_ridge ({design.pattern.node_clearance_ridge:g} mm)"
         )
-    families: tuple[Family, ...] = ("A1", "A2")
     renamed = {
         line.id: CurveId(family, i)
-        for family in families
+        for family in BEAMS
         for i, line in enumerate((x for x in every if x.id in used and x.id.family == family), start=1)
     }
     beams = [replace(line, id=renamed[line.id]) for line in every if line.id in used]

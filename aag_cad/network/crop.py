@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from aag_cad.design import Design
 from aag_cad.design_sections import LevelShells
 from aag_cad.errors import NetworkError
+from aag_cad.families import BEAMS, EDGES, FAMILIES, GEODESICS, Family
 from aag_cad.geometry.framed import FramedCurve, frames_at
 from aag_cad.network.model import LEFT_RIDGE, RIGHT_RIDGE, Crossing, CurveId, NetworkCurve
 from aag_cad.network.ridge import ridge_distance
@@ -45,7 +46,7 @@ def _geodesic_extents(
     design: Design, curves: dict[CurveId, FramedCurve], crossings: list[Crossing]
 ) -> dict[CurveId, tuple[float, float]]:
     extents = {}
-    for curve in (name for name in curves if name.family == "G"):
+    for curve in (name for name in curves if name.family in GEODESICS):
         stops = [c for kind in ("foot", "ridge") for c in crossings if c.kind == kind and c.curves[0] == curve]
         extents[curve] = geodesic_extent(design, curves, stops)
         if extents[curve][1] - extents[curve][0] < 2 * design.timber.width:
@@ -83,7 +84,7 @@ def kept_crossings(design: Design, curves: dict[CurveId, FramedCurve], crossings
             if not low + reach <= c.stations[1] <= high - reach:
                 continue
         kept.add(c)
-    for beam in (name for name in curves if name.family in ("A1", "A2")):
+    for beam in (name for name in curves if name.family in BEAMS):
         ranked = sorted(_crossings_on(kept, beam), key=lambda c: (_RANK[c.kind], _station_on(c, beam)))
         placed: list[Crossing] = []
         for c in ranked:
@@ -100,13 +101,13 @@ def kept_crossings(design: Design, curves: dict[CurveId, FramedCurve], crossings
     return sorted(kept, key=lambda c: (c.kind, c.curves, c.stations))
 
 
-def _section_corners(design: Design, curve: FramedCurve, family: str, station: float) -> Floats:
+def _section_corners(design: Design, curve: FramedCurve, family: Family, station: float) -> Floats:
     """Return the corners (4, 3) of a beam's or edge plank's section at a station of its reference curve."""
-    if family == "E":
-        height, lift, across = design.timber.thickness / 2.0, 0.0, design.timber.width / 2.0
+    lift = FAMILIES[family].layer * design.layer_offset
+    if family in EDGES:
+        height, across = design.timber.thickness / 2.0, design.timber.width / 2.0
     else:
         height, across = design.timber.width / 2.0, design.sibling_offset + design.timber.thickness / 2.0
-        lift = design.layer_offset * (-1.0 if family == "A1" else 1.0)
     frames = frames_at(curve, np.array([station]))
     return np.array(
         [
@@ -117,7 +118,7 @@ def _section_corners(design: Design, curve: FramedCurve, family: str, station: f
     )
 
 
-def _free_overhang(design: Design, curve: FramedCurve, family: str, last: float, sign: float) -> float:
+def _free_overhang(design: Design, curve: FramedCurve, family: Family, last: float, sign: float) -> float:
     """Return how far a beam may reach past its last joint: ``end_overhang``, less where the ridge plane is near."""
     wish = design.boundary.end_overhang
 
@@ -157,9 +158,9 @@ def trimmed_curves(design: Design, curves: dict[CurveId, FramedCurve], crossings
     trimmed = []
     for name in sorted(curves):
         curve = curves[name]
-        if name.family == "G":
+        if name.family in GEODESICS:
             start, end = extents[name]
-        elif name.family == "E":
+        elif name.family in EDGES:
             start, end = 0.0, _crown_station(design, curve) if name in ridges else curve.length
         else:
             joints = [_station_on(c, name) for c in _crossings_on(crossings, name)]

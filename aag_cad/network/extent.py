@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from aag_cad.design import Design
+from aag_cad.families import FAMILIES, Family
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.geometry.surface import Chart
 from aag_cad.network.edges import bottom_coordinate, top_coordinate
-from aag_cad.network.model import CurveNetwork, Family
+from aag_cad.network.model import CurveNetwork
 from aag_cad.network.ridge import surface_points
 
 _SECTORS = 40
@@ -64,7 +65,7 @@ def shell_extent(design: Design, chart: Chart, network: CurveNetwork) -> ShellEx
         ]
         stations = np.linspace(min(joints), max(joints), 400)
         curvatures = curvatures_at(item.curve, stations)
-        weak = curvatures.geodesic if family in ("A1", "A2") else curvatures.normal
+        weak = curvatures.geodesic if FAMILIES[family].upright else curvatures.normal
         radii[family] = min(radii.get(family, np.inf), float(1.0 / max(np.abs(weak).max(), 1e-12)))
         twists[family] = max(twists.get(family, 0.0), float(np.abs(curvatures.torsion).max()))
     heights = [

@@ -8,7 +8,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import brentq
 
-from aag_cad.network.model import CurveId, Family
+from aag_cad.families import Family
+from aag_cad.network.model import CurveId
 from aag_cad.units import Floats
 
 _EDGE = 1e-9

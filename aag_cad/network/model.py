@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, TypeAlias
 
+from aag_cad.families import Family
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.units import Vector
 
-Family: TypeAlias = Literal["A1", "A2", "G", "E"]
 CrossingKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "ridge"]
 
 

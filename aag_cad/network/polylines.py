@@ -10,19 +10,19 @@ import json
 import math
 from collections.abc import Iterator
 from itertools import combinations
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from aag_cad.errors import FileError, NetworkError
+from aag_cad.families import BEAMS, EDGES, FAMILIES, Family
 from aag_cad.geometry.framed import FramedCurve, framed_curve, frames_at
 from aag_cad.geometry.surface import dot, unit
-from aag_cad.network.model import Crossing, CrossingKind, CurveId, CurveNetwork, Family, NetworkCurve
+from aag_cad.network.model import Crossing, CrossingKind, CurveId, CurveNetwork, NetworkCurve
 from aag_cad.units import Floats, vector
 
 SCHEMA_VERSION = 1
-FAMILIES: tuple[Family, ...] = get_args(Family)
 _SHORTEST = 100.0
 _LARGEST_COORDINATE = 1e6
 _MOST_POLYLINES, _MOST_POINTS = 500, 5000
@@ -91,8 +91,8 @@ def _families(text: str, source: str) -> dict[Family, list[Any]]:
     if unknown:
         raise FileError(f"{source}: no family called {', '.join(unknown)}; there are {', '.join(FAMILIES)}")
     for family in FAMILIES:
-        polylines = families.get(family, [] if family == "E" else None)
-        if not isinstance(polylines, list) or (not polylines and family != "E"):
+        polylines = families.get(family, [] if family in EDGES else None)
+        if not isinstance(polylines, list) or (not polylines and family not in EDGES):
             raise FileError(f"{source}: family {family} has no polylines; A1, A2 and G need one at least")
         if len(polylines) > _MOST_POLYLINES:
             raise FileError(
@@ -176,16 +176,16 @@ def _network_curve(name: CurveId, data: Any, where: str) -> NetworkCurve:
 def _kind(a: CurveId, b: CurveId) -> CrossingKind | None:
     """Return what a crossing of two curves is; None for curves of one family, whose planks lie in one layer."""
     families = {a.family, b.family}
-    if families == {"A1", "A2"}:
-        return "AA"
-    if families == {"E"}:
+    if families <= set(EDGES):
         return "ridge" if min(a.number, b.number) > 1 else None
     if len(families) == 1:
         return None
-    if families == {"G", "E"}:
-        edge = a if a.family == "E" else b
+    if families <= set(BEAMS):
+        return "AA"
+    edge = next((curve for curve in (a, b) if curve.family in EDGES), None)
+    if edge and not families & set(BEAMS):
         return "foot" if edge.number == 1 else "ridge"
-    return "boundary" if "E" in families else "AG"
+    return "boundary" if edge else "AG"
 
 
 def _candidates(a: FramedCurve, b: FramedCurve) -> Floats:
@@ -232,7 +232,7 @@ def _crossings(items: list[NetworkCurve], source: str, tolerance: float) -> list
     G curves go on to the edge planks that cut them off; everywhere else a crossing counts where both planks lie.
     """
     crossings = []
-    for a, b in combinations(sorted(items, key=lambda item: (FAMILIES.index(item.id.family), item.id.number)), 2):
+    for a, b in combinations(sorted(items, key=lambda item: (list(FAMILIES).index(item.id.family), item.id.number)), 2):
         kind = _kind(a.id, b.id)
         for stations in _closest(a.curve, b.curve):
             on_planks = all(
@@ -260,7 +260,7 @@ def _crossing(
         return None
     where = "({:.0f}, {:.0f}, {:.0f})".format(*first.point[0])
     if kind is None:
-        if a.id.family == "E":
+        if a.id.family in EDGES:
             return None
         raise NetworkError(f"{pair} cross near {where}; curves of one family never do: sort them into A1, A2 and G")
     if gap > tolerance:

@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from aag_cad.design import Design
+from aag_cad.families import GEODESICS
 from aag_cad.geometry.framed import FramedCurve, frames_at
 from aag_cad.geometry.patches import turn
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork
@@ -67,7 +68,7 @@ def _numbered(network: CurveNetwork, shell: int) -> list[tuple[Mark, Crossing]]:
     marked += [(Mark(shell, "F", c.curves[0].number), c) for c in of("foot")]
     last = max(c.curves[0].number for c in of("foot"))
     for c in of("ridge"):
-        marked.append((Mark(shell, "R", c.curves[0].number if c.curves[0].family == "G" else last + 1), c))
+        marked.append((Mark(shell, "R", c.curves[0].number if c.curves[0].family in GEODESICS else last + 1), c))
     return marked
 
 

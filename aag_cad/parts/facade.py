@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 from aag_cad.design import Design
 from aag_cad.design_sections import LevelShells
 from aag_cad.errors import DesignError
+from aag_cad.families import GEODESICS
 from aag_cad.geometry.developable import ruled_edges, shared_range
 from aag_cad.geometry.framed import SAMPLE_SPACING, FramedCurve, frames_at, nearest_station, offset_curve
 from aag_cad.network.model import CurveNetwork, NetworkCurve
@@ -334,7 +335,7 @@ def _fixed_line(
 
 
 def _lines(design: Design, network: CurveNetwork, shell: Shell) -> tuple[list[_Line], list[Strip]]:
-    items = {item.id.number: item for item in network.curves if item.id.family == "G"}
+    items = {item.id.number: item for item in network.curves if item.id.family in GEODESICS}
     planks = index_of(shell).planks
     mullions, clamps = _bars(design, list(items.values()))
     beside: dict[int, list[str]] = {number: [] for number in items}

@@ -7,13 +7,14 @@ import numpy as np
 
 from aag_cad.design import Design
 from aag_cad.errors import DesignError
+from aag_cad.families import FAMILIES
 from aag_cad.geometry.framed import frames_at
 from aag_cad.geometry.surface import unit
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork, NetworkCurve
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt, threaded_rod
 from aag_cad.parts.joints import BuiltJoint
 from aag_cad.parts.marks import Mark, part_mark
-from aag_cad.parts.members import LAYER, Drilling, curve_mark
+from aag_cad.parts.members import Drilling, curve_mark
 from aag_cad.parts.model import Bolt, FoldedPlate, Footing, Frame, Joint, PlateHole, Rod, Shoe
 from aag_cad.units import Floats, vector
 
@@ -41,7 +42,7 @@ def _beam_at(network: CurveNetwork, crossing: Crossing, reach: float) -> tuple[i
         near = np.linalg.norm(np.subtract(other.point, crossing.point)) < reach
         if other.kind == "boundary" and other.curves[1] == crossing.curves[1] and near:
             beam, station = other.curves[0], np.array([other.stations[0]])
-            return LAYER[beam.family], frames_at(curves[beam].curve, station).tangent[0]
+            return FAMILIES[beam.family].layer, frames_at(curves[beam].curve, station).tangent[0]
     return None
 
 

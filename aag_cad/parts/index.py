@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol, TypeVar
 
+from aag_cad.families import EDGES, GEODESICS
 from aag_cad.parts.model import (
     Beam,
     Bolt,
@@ -63,6 +64,16 @@ class Index:
     def planks(self) -> dict[str, Plank]:
         """The planks."""
         return self._of(Plank)
+
+    @cached_property
+    def geodesics(self) -> dict[str, Plank]:
+        """The planks that lie flat along geodesics, from side to side."""
+        return {mark: plank for mark, plank in self.planks.items() if plank.family in GEODESICS}
+
+    @cached_property
+    def edges(self) -> dict[str, Plank]:
+        """The planks along the edges."""
+        return {mark: plank for mark, plank in self.planks.items() if plank.family in EDGES}
 
     @cached_property
     def studs(self) -> dict[str, Stud]:

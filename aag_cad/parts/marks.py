@@ -12,10 +12,12 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from aag_cad.errors import MarkError
+from aag_cad.families import BEAMS, FAMILIES
 
-_WIDTH = {"A1": 2, "A2": 2, "G": 2, "E": 2, "F": 2, "R": 2, "C": 2, "P": 2, "M": 2, "D": 2, "N": 3, "K": 3, "V": 3}
+_WIDTH: dict[str, int] = dict.fromkeys((*FAMILIES, *"FRCPMD"), 2) | dict.fromkeys("NKV", 3)
 _PATTERN = re.compile(
-    r"S(?P<shell>[1-9]\d?)(?:-(?P<family>A1|A2|[GEFRCPMDNKV])-(?P<index>\d{2,5})(?:-(?P<part>[LR]|[BWT][1-9]\d?))?)?"
+    rf"S(?P<shell>[1-9]\d?)(?:-(?P<family>{'|'.join(_WIDTH)})-"
+    r"(?P<index>\d{2,5})(?:-(?P<part>[LR]|[BWT][1-9]\d?))?)?"
 )
 _BLADE = re.compile(r"R(?P<pair>[1-9][1-9])-(?P<index>\d{2,5})(?:-(?P<part>B[1-9]\d?))?")
 
@@ -64,7 +66,7 @@ def parse_mark(text: str) -> Mark:
         )
     if not mark.shell and mark.family[1] == mark.family[2]:
         raise MarkError(f"{text!r} is not a mark: a ridge blade joins two different shells, as in R12-03")
-    if mark.part and (mark.part in "LR") != (mark.family in ("A1", "A2")):
+    if mark.part and (mark.part in "LR") != (mark.family in BEAMS):
         raise MarkError(f"{text!r} is not a mark: only planks of A beams end in L or R, only fasteners in B1, W1 or T1")
     if str(mark) != text or (mark.family and mark.index == 0):
         raise MarkError(f"{text!r} is not a mark as it is printed; {str(mark)!r} would be, with indices from 1")

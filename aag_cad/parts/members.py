@@ -7,14 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from aag_cad.design import Design
+from aag_cad.families import FAMILIES, Family
 from aag_cad.geometry.framed import FramedCurve, frames_at, nearest_station, offset_curve
-from aag_cad.network.model import CurveId, CurveNetwork, Family
+from aag_cad.network.model import CurveId, CurveNetwork
 from aag_cad.parts.forming import axis_piercings
 from aag_cad.parts.marks import Mark, part_mark
 from aag_cad.parts.model import Beam, Blank, CrossSection, Hole, HoleUse, JointStation, Plank
 from aag_cad.units import Floats, Vector
-
-LAYER = {"A1": -1, "G": 0, "E": 0, "A2": 1}
 
 
 @dataclass(frozen=True)
@@ -40,7 +39,7 @@ def _plank(design: Design, mark: str, beam: str, family: Family, curve: FramedCu
     return Plank(
         mark=mark,
         family=family,
-        layer=LAYER[family],
+        layer=FAMILIES[family].layer,
         upright=bool(beam),
         beam=beam,
         curve=curve,
@@ -58,12 +57,13 @@ def undrilled_members(design: Design, shell: int, network: CurveNetwork) -> tupl
     beams, planks = [], []
     for item in network.curves:
         mark, family = curve_mark(shell, item.id), item.id.family
-        if family in ("G", "E"):
+        layer = FAMILIES[family].layer
+        if not FAMILIES[family].upright:
             line = offset_curve(item.curve, 0.0, 0.0, item.start, item.end)
             planks.append(_plank(design, mark, "", family, line))
             continue
-        axis = offset_curve(item.curve, LAYER[family] * design.layer_offset, 0.0, item.start, item.end)
-        beams.append(Beam(mark, family, LAYER[family], (part_mark(mark, "L"), part_mark(mark, "R")), axis, ()))
+        axis = offset_curve(item.curve, layer * design.layer_offset, 0.0, item.start, item.end)
+        beams.append(Beam(mark, family, layer, (part_mark(mark, "L"), part_mark(mark, "R")), axis, ()))
         for side, sign in (("L", 1.0), ("R", -1.0)):
             line = offset_curve(axis, 0.0, sign * design.sibling_offset, 0.0, axis.length)
             planks.append(_plank(design, part_mark(mark, side), mark, family, line))

@@ -8,8 +8,8 @@ blank, x along it from its start, y across its width and z through its thickness
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from aag_cad.families import Family
 from aag_cad.geometry.framed import FramedCurve
-from aag_cad.network.model import Family
 from aag_cad.units import Vector
 
 SCHEMA_VERSION = 2

@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from aag_cad.design import Design
+from aag_cad.families import GEODESICS
 from aag_cad.geometry.framed import FramedCurve, framed_curve, frames_at, nearest_station, offset_curve
 from aag_cad.geometry.surface import unit
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork, NetworkCurve
@@ -126,7 +127,7 @@ def strap_joint(
     """
     curves = {curve.id: curve for curve in network.curves}
     names = crossing.curves
-    if names[0].family == "G":
+    if names[0].family in GEODESICS:
         runs = [_geodesic_run(design, curves[names[0]], crossing)]
     else:
         nearest = design.joints.loaded_end + 6.0 * design.joints.bolt_diameter
@@ -146,7 +147,7 @@ def strap_joint(
         places = [place for way in chosen if way is not None for place in way]
         if None not in chosen and free(_strap(design, mark, run, places, side)):
             return _strapped(design, mark, crossing, run, places, side)
-    if names[0].family != "G":
+    if names[0].family not in GEODESICS:
         members = tuple(curve_mark(mark.shell, name) for name in names)
         return BuiltJoint(Joint(str(mark), "ridge", crossing.point, crossing.normal, members, ()), (), ())
     return _strapped(design, mark, crossing, runs[0], [*runs[0].ways[0][0], *runs[0].ways[1][0]], -1.0)

@@ -7,6 +7,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from aag_cad.families import EDGES
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Joint, JointKind, Part, Shell
 from assembly.base.errors import PlanError
@@ -75,7 +76,7 @@ def _homes(shell: Shell, block_beam: dict[str, str]) -> dict[tuple[Group, str], 
         if not flat:
             return None
         family, mark = flat[0]
-        return ("edges" if family == "E" else "outside" if fastener in outer else "inside"), mark
+        return ("edges" if family in EDGES else "outside" if fastener in outer else "inside"), mark
 
     homes: dict[tuple[Group, str], list[str]] = defaultdict(list)
     for joint in shell.joints:
@@ -104,8 +105,8 @@ def shell_kit(shell: Shell) -> Kit:
     for block in shell.blocks:
         blocks[block_beam.get(block.mark, "")].append(block.mark)
     bolts = group("beams", (beam.mark for beam in shell.beams))
-    edges = [plank.mark for plank in shell.planks if plank.family == "E"]
-    flat = [plank.mark for plank in shell.planks if plank.family == "G"]
+    edges = list(index_of(shell).edges)
+    flat = list(index_of(shell).geodesics)
     footed = {mark for joint in shell.joints if joint.kind == "foot" for mark in joint.members}
     kit = Kit(
         beams={beam.mark: (*beam.planks, *blocks[beam.mark], *bolts[beam.mark]) for beam in shell.beams},

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from aag_cad.families import EDGES
 from aag_cad.geometry.surface import unit
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Shell
@@ -40,7 +41,7 @@ def shell_view(shell: Shell) -> View:
 def sweep_direction(shell: Shell) -> Floats:
     """Return the direction (3,) across a shell in which its flat planks are numbered."""
     right: Floats = shell_view(shell).axes[0]
-    flat = [plank for plank in shell.planks if not plank.upright and plank.family != "E"]
+    flat = [plank for plank in shell.planks if not plank.upright and plank.family not in EDGES]
     if len(flat) < 2:
         return right
     across = np.array([plank.curve.point_spline(plank.curve.length / 2.0) @ right for plank in flat])

@@ -105,7 +105,7 @@ def page_html(booklet: Booklet, plan: Plan, gridshell: Gridshell) -> str:
     cards = (card_section(card, data["words"]["card"], pictures) for card in data["cards"])
     body = "\n".join((*_front(data, pictures), *cards, *_back(data, pictures)))
     steps = [{"number": n, "title": t, "marks": " ".join(m)} for n, t, m in handled_marks(plan, gridshell)]
-    example = next((p.mark for p in gridshell.shells[0].planks if p.family == "G"), gridshell.shells[0].planks[0].mark)
+    example = next(iter((*index_of(gridshell).geodesics, *index_of(gridshell).planks)))
     return filled_page(data, body, steps, shared.defs, said["search"].format(example=example))
 
 

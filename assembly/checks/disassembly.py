@@ -116,11 +116,11 @@ def _fastened(gridshell: Gridshell, leaves: dict[str, _Place], lying: dict[str, 
 
 def _covered(gridshell: Gridshell, lying: dict[str, _Place]) -> Iterator[_Rule]:
     """Yield the order of planks that cross; edge planks are drawn out lengthwise between the others."""
-    planks = index_of(gridshell).planks
+    planks, edges = index_of(gridshell).planks, index_of(gridshell).edges
     for joint in (joint for shell in gridshell.shells for joint in shell.joints):
         members = [mark for mark in joint.members if mark in lying]
         for upper, lower in product(members, members):
-            if planks[upper].layer > planks[lower].layer and "E" not in (planks[upper].family, planks[lower].family):
+            if planks[upper].layer > planks[lower].layer and not {upper, lower} & edges.keys():
                 yield f"{upper} lies on {lower} at {joint.mark}", lying[upper], lying[lower]
 
 
@@ -160,7 +160,7 @@ def _hanging(plan: Plan, shell: Shell, leaves: dict[str, _Place]) -> Iterator[_R
     yield f"{shell.mark} is off its feet before it hangs", lift, hang
     yield f"{shell.mark} hangs before it is lowered", hang, lower
     bracing = index_of(shell).screws.keys() - covering
-    bracing |= {plank.mark for plank in shell.planks if plank.family == "E"} | index_of(shell).straps.keys()
+    bracing |= index_of(shell).edges.keys() | index_of(shell).straps.keys()
     for mark in sorted(bracing & set(leaves)):
         yield f"{mark} keeps the shape of {shell.mark} until it hangs", hang, leaves[mark]
         yield f"{mark} must be out before the nodes turn", leaves[mark], lower

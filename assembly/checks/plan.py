@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
+from aag_cad.families import EDGES
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import shells_of
 from aag_cad.parts.model import Footing, Gridshell, Part, Rod, Shell, Shoe, ridge_parts, shell_parts
@@ -65,7 +66,7 @@ def _layering(shell: Shell, places: dict[str, tuple[Step, int]]) -> Iterator[tup
     slid = {mark for mark, (step, _) in places.items() if step.phase == "slide"}
     planks = index_of(shell).planks
     for joint in shell.joints:
-        members = [planks[mark] for mark in joint.members if mark in planks and planks[mark].family != "E"]
+        members = [planks[mark] for mark in joint.members if mark in planks and planks[mark].family not in EDGES]
         for lower in members:
             for upper in members:
                 if lower.layer < upper.layer and lower.mark in places and upper.mark in places:
@@ -100,7 +101,7 @@ def _orders(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]]) -> It
         if plank.beam and plank.mark in made and plank.beam in at:
             yield f"{plank.mark} is part of {plank.beam}", made[plank.mark], at[plank.beam]
         if plank.mark in at:
-            edge, laid = plank.family == "E", at[plank.mark]
+            edge, laid = plank.family in EDGES, at[plank.mark]
             yield (f"{plank.mark} is an edge plank", hoist, laid) if edge else (f"{plank.mark} is laid", laid, hoist)
     for joint in shell.joints:
         in_beam = any(mark in blocks for mark in joint.members)

@@ -138,12 +138,12 @@ def tracks(shell: Shell) -> Tracks:
 
     A beam or edge plank that crosses no geodesic has no place in a cut and is an error too.
     """
-    geodesics = tuple(plank for plank in shell.planks if plank.family == "G")
+    geodesics = tuple(index_of(shell).geodesics.values())
     if len(geodesics) < 3:
         raise PlanError(f"{shell.mark}: {len(geodesics)} geodesics, at least 3 to cut along; carry the shell whole")
     lines = {plank.mark: i for i, plank in enumerate(geodesics, start=1)}
     joints = index_of(shell).joints
-    crossing: list[Beam | Plank] = [*shell.beams, *(plank for plank in shell.planks if plank.family == "E")]
+    crossing: list[Beam | Plank] = [*shell.beams, *index_of(shell).edges.values()]
     members = tuple(_track(member, joints, lines, geodesics) for member in crossing)
     lone = [track.mark for track in members if not track.crossings]
     if lone:

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 import networkx as nx
 
+from aag_cad.families import EDGES
 from aag_cad.findings import Finding
 from aag_cad.language import Text, text
 from assembly.base.errors import PlanError
 from assembly.graph.circles import circle_links, few_out, knots, part_of, relations
 from assembly.graph.faults import refuse_unlayable
-from assembly.graph.laying_units import EDGE_FAMILY, Crossing, crossings_of, units_of
+from assembly.graph.laying_units import Crossing, crossings_of, units_of
 from assembly.graph.sliding import End, Hindrance, Sliding, Why, slidings
 
 __all__ = ["Crossing", "Interlacing", "Slide", "interlacing"]
@@ -116,7 +117,7 @@ def interlacing(graph: "nx.MultiGraph[str]", later: Collection[str] | None = Non
     """
     refuse_unlayable(graph)
     units = units_of(graph)
-    absent = {mark for mark, unit in units.items() if unit.family == EDGE_FAMILY} if later is None else set(later)
+    absent = {mark for mark, unit in units.items() if unit.family in EDGES} if later is None else set(later)
     crossings, meetings = crossings_of(graph)
     lying = relations(units, crossings)
     tied = {mark for knot in knots(lying) for mark in knot}

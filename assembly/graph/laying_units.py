@@ -13,7 +13,6 @@ from aag_cad.units import Floats, Vector
 PARALLEL = 1e-9
 
 # Edge planks are pushed in when the shell has its shape; until then they do not lie on the floor.
-EDGE_FAMILY = "E"
 
 
 @dataclass(frozen=True)

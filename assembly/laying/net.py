@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from aag_cad.families import EDGES
 from aag_cad.geometry.framed import frames_at
 from aag_cad.mechanics.siblings import geodesic_turn, plane_curve
 from aag_cad.parts.index import index_of
@@ -196,7 +197,7 @@ def _crossed(shell: Shell) -> dict[str, tuple[str, str]]:
     for joint in shell.joints:
         if joint.kind in ("AA", "AG", "boundary"):
             planks = (index.planks[mark] for mark in joint.members if mark in index.planks)
-            meeting = sorted((plank.layer, index.unit_of[plank.mark]) for plank in planks if plank.family != "E")
+            meeting = sorted((plank.layer, index.unit_of[plank.mark]) for plank in planks if plank.family not in EDGES)
             marks = tuple(dict.fromkeys(mark for _, mark in meeting))
             if len(marks) == 2:
                 found[joint.mark] = (marks[0], marks[1])
@@ -205,7 +206,7 @@ def _crossed(shell: Shell) -> dict[str, tuple[str, str]]:
 
 def shell_net(shell: Shell) -> Net:
     """Return the net of a shell; PlanError if it has no beams that cross on studs."""
-    geodesics = [plank for plank in shell.planks if plank.family == "G"]
+    geodesics = list(index_of(shell).geodesics.values())
     members: list[Beam | Plank] = [*shell.beams, *geodesics]
     begin, near = _laid_out(shell, members, is_ring(shell))
     places = {member.mark: _stations(member)[1] for member in members}

@@ -12,6 +12,7 @@ from typing import TypeAlias, TypeVar
 import networkx as nx
 import numpy as np
 
+from aag_cad.families import EDGES
 from aag_cad.parts.model import Gridshell, Shell, Stud
 from aag_cad.units import MM_PER_M, Floats, Vector
 from assembly.base.crew import LONG_PIECE
@@ -20,7 +21,7 @@ from assembly.base.shell_axes import best_plane, shell_view, sweep_direction
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import Interlacing, Slide, interlacing, refuse_left_out
 from assembly.graph.layers import layer_precedence
-from assembly.graph.laying_units import EDGE_FAMILY, Unit, units_of
+from assembly.graph.laying_units import Unit, units_of
 from assembly.laying.footpath import shorter_path
 from assembly.laying.walking import (
     Line,
@@ -248,7 +249,7 @@ def flat_order(shell: Shell, woven: Interlacing | None = None) -> FlatOrder:
     ends: dict[str, list[Floats]] = defaultdict(list)
     sorts: dict[str, _Sort] = {}
     lengths: dict[str, float] = defaultdict(float)
-    for plank in (plank for plank in shell.planks if plank.family != EDGE_FAMILY):
+    for plank in (plank for plank in shell.planks if plank.family not in EDGES):
         unit, long = plank.beam or plank.mark, plank.curve.length
         ends[unit].append(plank.curve.point_spline(np.array([0.0, long])) @ axes.T)
         sorts[unit] = (shell.mark, plank.layer, plank.family)
@@ -299,7 +300,7 @@ def flat_order_of(
     units = units_of(graph)
     shells: dict[str, list[Unit]] = defaultdict(list)
     for unit in units.values():
-        gone = unit.family == EDGE_FAMILY if later is None else unit.mark in later
+        gone = unit.family in EDGES if later is None else unit.mark in later
         if not gone and unit.mark not in interlacing.left_out:
             shells[unit.shell].append(unit)
     studs: dict[str, list[str]] = defaultdict(list)

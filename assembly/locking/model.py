@@ -121,9 +121,7 @@ def hoist_points(shell: Shell) -> tuple[str, ...]:
 
 def geodesic_groups(shell: Shell, pairs: bool) -> tuple[tuple[str, ...], ...]:
     """Return the geodesics of a shell in groups: G-k with G-(n + 1 - k), or each alone."""
-    marks = sorted(
-        (plank.mark for plank in shell.planks if plank.family == "G"), key=lambda mark: parse_mark(mark).index
-    )
+    marks = sorted(index_of(shell).geodesics, key=lambda mark: parse_mark(mark).index)
     if not pairs:
         return tuple((mark,) for mark in marks)
     half = (len(marks) + 1) // 2

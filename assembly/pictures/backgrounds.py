@@ -142,7 +142,7 @@ def ridge_planks(gridshell: Gridshell, pair: Sequence[str]) -> tuple[str, ...]:
 
     def middles(mark: str) -> dict[str, Floats]:
         matrix = frame_matrix(shells[mark].placement)
-        edges = [plank for plank in shells[mark].planks if plank.family == "E"]
+        edges = index_of(shells[mark]).edges.values()
         points = {plank.mark: plank.curve.point_spline(plank.curve.length / 2.0) for plank in edges}
         return {edge: matrix[:3, :3] @ point + matrix[:3, 3] for edge, point in points.items()}
 

@@ -47,7 +47,7 @@ def _released(shell: Shell, step: Step, there: frozenset[str], outer: set[str]) 
     """Return the screws of geodesics that leave: dots from outside, rings from inside, grey where they are out."""
     screws = [screw.mark for screw in shell.screws]
     members = {mark: joint.members for joint in shell.joints for mark in joint.fasteners}
-    single: list[Plank] = [plank for plank in shell.planks if plank.family == "G"]
+    single: list[Plank] = list(index_of(shell).geodesics.values())
     held = {member for mark in step.marks for member in members.get(mark, ())}
     freed = [plank.mark for plank in single if plank.mark in held]
     dots = _joints(step, [mark for mark in screws if mark in outer])
@@ -78,7 +78,7 @@ def down_scene(shell: Shell, step: Step, there: frozenset[str], outer: set[str])
             rings = _joints(step, [screw.mark for screw in shell.screws])
             return Scene(there=there, new=step.marks, names=_short(plates), rings=rings)
         case "prop":
-            edges = [plank.mark for plank in shell.planks if plank.family == "E"]
+            edges = list(index_of(shell).edges)
             told = _short(step.props)
             return Scene(there=there, worked_on=edges, names=_short(edges), props=step.props, numbers=told)
         case "lift off":

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from aag_cad.families import BEAMS, EDGES, GEODESICS
 from aag_cad.language import Language, say
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import number_of, parse_mark, short_mark
@@ -60,12 +61,12 @@ def _plank_items(shell: Shell, outline: Outline) -> Iterator[str]:
 def _names(lines: dict[str, Floats], sheet: Box, taken: list[Box]) -> str:
     """Return framed marks: of beams at their start ends, of geodesics beyond the others, of edge planks on them."""
     wanted = []
-    for mark, line in sorted(lines.items(), key=lambda item: (parse_mark(item[0]).family in ("G", "E"), item[0])):
+    for mark, line in sorted(lines.items(), key=lambda item: (parse_mark(item[0]).family not in BEAMS, item[0])):
         family = parse_mark(mark).family
-        if family == "E":
+        if family in EDGES:
             wanted.append((short_mark(mark), places_along(line, (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82))))
             continue
-        ends = line[::-1] if family == "G" else line
+        ends = line[::-1] if family in GEODESICS else line
         out = (ends[0] - ends[1]) / np.linalg.norm(ends[0] - ends[1])
         across = np.array([-out[1], out[0]])
         aways = ((66, 0), (60, 40), (60, -40), (95, 0), (90, 55), (90, -55), (130, 0), (125, 50), (125, -50), (165, 0))

@@ -70,7 +70,7 @@ def _beside(stud: Stud, joint: Joint, shell: Shell) -> tuple[Beam, Beam, Couplin
     joints = {joint.mark: joint for joint in shell.joints if joint.kind == "AG"}
     here = next(place.station for place in beams[0].joints if place.joint == stud.mark)
     near = sorted((abs(p.station - here), p.joint, p.station - here) for p in beams[0].joints if p.joint in joints)
-    geodesics = {plank.mark: plank for plank in shell.planks if plank.family == "G"}
+    geodesics = index_of(shell).geodesics
     normal, ahead = np.array(stud.frame.z), _tangent(beams[0], stud.mark)
     for _, mark, away in near:
         crossing = [geodesics[member] for member in joints[mark].members if member in geodesics]
@@ -176,7 +176,7 @@ def _apart(node: _Node, shell: Shell, centre: Floats, language: Language) -> Ite
     def sheet(point: Floats) -> Floats:
         return np.asarray(centre + _UNITS * (axes[:2] @ point) * [1.0, -1.0])
 
-    flat = next(plank for plank in shell.planks if plank.family == "G").blank.section
+    flat = next(iter(index_of(shell).geodesics.values())).blank.section
     lower, upper = _beam(node, -1, shell), _beam(node, 1, shell)
     block = _board(
         node.beside - [0.0, 0.0, node.offset], node.lower, (node.block.length, node.block.thickness, node.block.width)
@@ -217,7 +217,7 @@ def _together(node: _Node, shell: Shell, centre: Floats, language: Language) -> 
     """Yield the section through the node with its layers put together, and the heights of their faces."""
     k, (x, y) = _SECTION_UNITS, centre.tolist()
     section = next(plank for plank in shell.planks if plank.upright).blank.section
-    flat = next(plank for plank in shell.planks if plank.family == "G").blank.section
+    flat = next(iter(index_of(shell).geodesics.values())).blank.section
     wide, thick, gap = section.width, section.thickness, beam_width(shell) - 2.0 * section.thickness
 
     def box(left: float, low: float, width: float, height: float, fill: str) -> str:

@@ -81,9 +81,8 @@ def _between(splices: Sequence[Splice], segments: Sequence[Segment]) -> list[Spl
 
 
 def _geodesic_of(shell: Shell, foot: str) -> str:
-    planks = index_of(shell).planks
-    members = index_of(shell).joints[foot].members
-    return next((mark for mark in members if mark in planks and planks[mark].family == "G"), "")
+    index = index_of(shell)
+    return next((mark for mark in index.joints[foot].members if mark in index.geodesics), "")
 
 
 def segment_scene(shell: Shell, step: Step, segmentation: Segmentation, stood: Sequence[str]) -> Scene:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from aag_cad.design_making import Minutes
+from aag_cad.families import FAMILIES
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import (
     Blade,
@@ -40,7 +41,6 @@ _KINDS: dict[type[Part], str] = {
     Stud: "stud", CouplingBlock: "block", Bolt: "bolt", Screw: "screw", Strap: "strap", Shoe: "shoe", Rod: "rod",
     Footing: "footing", Mullion: "mullion", Strip: "strip", ClampingBar: "clamp", Blade: "blade",
 }  # fmt: skip
-_PLANKS = {"A1": "plank", "A2": "plank", "G": "geodesic", "E": "edge_plank"}
 _LONG = (Plank, Mullion, Strip, ClampingBar)
 # Bolts of the other phases stay loose until the shell is tightened.
 _TIGHTENED_AT_ONCE = ("prefabricate", "stand", "ridges")
@@ -97,7 +97,7 @@ def _work_with(known: _Lengths, step: Step) -> StepWork:
         part = known.parts.get(mark)
         if part is None:
             raise PlanError(f"{mark}: step {step.id} handles it, but the gridshell has no such part: plan it again")
-        handled[_PLANKS[part.family] if isinstance(part, Plank) else _KINDS[type(part)]] += 1
+        handled[FAMILIES[part.family].minutes if isinstance(part, Plank) else _KINDS[type(part)]] += 1
     beams = [mark for mark in step.assemblies if mark in known.lengths and mark not in known.parts]
     handled["beam"] += len(beams)
     measured = [mark for mark in step.assemblies if mark in known.parts]

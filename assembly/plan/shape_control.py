@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Shell, Stud
 from aag_cad.units import Floats
 from assembly.base.shell_axes import shell_view
@@ -100,7 +101,7 @@ def prop_points(shell: Shell) -> tuple[str, ...]:
     upper edges three studs at the top stand for these.
     """
     footed = {mark for joint in shell.joints if joint.kind == "foot" for mark in joint.members}
-    edges = [plank.mark for plank in shell.planks if plank.family == "E" and plank.mark not in footed]
+    edges = [mark for mark in index_of(shell).edges if mark not in footed]
     found: list[str] = []
     for edge in edges:
         joints = [joint for joint in shell.joints if joint.kind == "boundary" and edge in joint.members]

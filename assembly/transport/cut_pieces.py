@@ -251,7 +251,7 @@ def run_between(item: Divisible, start: int, end: int) -> Run:
         centres.append(item.centres[mark])
         corners += [item.small_corners[mark]] if mark in item.small_corners else []
     return Run(
-        tuple(mark for mark in spans if item.planks[mark].family == "G"),
+        tuple(mark for mark in spans if mark in index_of(item.shell).geodesics),
         (*whole, *small),
         tuple(pieces),
         float(sum(masses)),

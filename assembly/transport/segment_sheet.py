@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TypeAlias
 
+from aag_cad.families import FAMILIES
 from aag_cad.language import Figure, Language, say, says
 from aag_cad.parts.marks import parse_mark, short_mark
 from assembly.base.mark_ranges import joined_ranges
@@ -18,7 +19,6 @@ SPLICES_HEADER = (
     "member", "line", "joint", "kind", "plank", "station_mm", "clear_mm", "required_mm", "length_mm", "bolts",
     "bolt_diameter_mm", "left_out", "fits",
 )  # fmt: skip
-_PLANKS = ("A1", "A2", "G", "E")
 
 Row: TypeAlias = tuple[str, ...]
 Card: TypeAlias = dict[str, str | list[str] | list[list[str]]]
@@ -152,7 +152,7 @@ def segment_cards(plan: Segmentation, language: Language = "en") -> list[Card]:
 def _facts(plan: Segmentation, segment: Segment, language: Language) -> Iterator[tuple[str, str]]:
     """Yield (key of what, value) for the head of a card."""
     x, y, z = (_number(value) for value in segment.centre)
-    whole = [mark for mark in segment.parts if parse_mark(mark).family in _PLANKS]
+    whole = [mark for mark in segment.parts if parse_mark(mark).family in FAMILIES]
     steel = _number(segment.mass - segment.timber)
     yield "geodesics", joined_ranges(segment.geodesics)
     key = "value.parts" if segment.pieces else "value.all_parts"

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from aag_cad.design import load_design
+from aag_cad.families import Family
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.language import printed
-from aag_cad.network.model import Family
 from aag_cad.parts.model import (
     UNMOVED,
     Beam,

@@ -15,6 +15,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from aag_cad.export.cad.step_text import Header, kernel_settings, named, placement, step_bytes
+from aag_cad.families import FAMILIES
 from aag_cad.files import write_bytes
 from aag_cad.network.model import CurveNetwork, NetworkCurve
 from aag_cad.parts.marks import short_mark
@@ -81,7 +82,7 @@ def _document(network: CurveNetwork, surface: InterpolatedSurface | None) -> TDo
     whole = _group(shapes, "Network")
     if surface is not None:
         _add(shapes, whole, surface_face(surface), "Surface")
-    for family in ("A1", "A2", "G", "E"):
+    for family in FAMILIES:
         items = sorted((item for item in network.curves if item.id.family == family), key=lambda item: item.id)
         if not items:
             continue

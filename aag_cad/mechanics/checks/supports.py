@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from aag_cad.design import Design
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Footing, Gridshell, Shell, shell_parts
 from aag_cad.parts.quantities import mass
 from aag_cad.units import MM2_PER_M2, Floats
@@ -47,8 +48,8 @@ def plan_area(shell: Shell, closed: bool) -> float:
     feet = {mark: joint.point for joint in shell.joints if joint.kind == "foot" for mark in joint.members}
     lines = [
         np.array([feet[plank.mark], *plank.curve.points, ends[plank.mark]])[:, :2]
-        for plank in shell.planks
-        if plank.family == "G" and plank.mark in feet and plank.mark in ends
+        for plank in index_of(shell).geodesics.values()
+        if plank.mark in feet and plank.mark in ends
     ]
     fields = pairwise([*lines, *lines[:1]] if closed else lines)
     return sum(_polygon_area(np.concatenate([a, b[::-1]])) for a, b in fields)

@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from aag_cad.families import BEAMS, EDGES, GEODESICS
 from aag_cad.geometry.framed import frames_at
 from aag_cad.mechanics.frame.model import (
     ORIGIN,
@@ -154,7 +155,7 @@ def _links(lines: dict[str, _Line], joints: Iterable[Joint], home: dict[str, str
 
 
 def _rank(name: str) -> tuple[int, str]:
-    return ("A1", "A2", "E", "G").index(parse_mark(name).family), name
+    return (*BEAMS, *EDGES, *GEODESICS).index(parse_mark(name).family), name
 
 
 def _shares(stations: Floats, length: float) -> Floats:
