@@ -1,8 +1,7 @@
 """The plan of any graph of parts as one HTML page: its members as lines in plan, and one section a step."""
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from html import escape
 from math import ceil
 from typing import Any
 
@@ -12,8 +11,8 @@ import numpy as np
 from aag_cad.units import Floats
 from assembly.base.names import phase_name
 from assembly.base.steps import Plan, Step
-from assembly.booklet.markup import card_section, contents, filled_page
-from assembly.booklet.shared_pictures import shared_pictures
+from assembly.booklet.contents import Booklet
+from assembly.booklet.phone_page import filled_page
 from assembly.booklet.words import booklet_words, finding_lines
 from assembly.drawing.svg import Style, circle, group, label_svg, path, placed_labels, places_along, polylines, svg
 from assembly.graph.interlacing import Interlacing, interlacing
@@ -120,12 +119,6 @@ def _chapters(plan: Plan, words: Mapping[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
-def _findings(plan: Plan, words: Mapping[str, Any]) -> Iterator[str]:
-    if plan.findings:
-        lines = "".join(f"<li>{escape(line)}</li>" for line in finding_lines(plan.findings, plan.language))
-        yield f'<section id="findings"><h2>{escape(words["findings"]["title"])}</h2><ul>{lines}</ul></section>'
-
-
 def graph_html(plan: Plan, schedule: Schedule, graph: "nx.MultiGraph[str]") -> str:
     """Return the plan of a graph of parts as one HTML page without links to anything else; same plan, same text.
 
@@ -140,27 +133,22 @@ def graph_html(plan: Plan, schedule: Schedule, graph: "nx.MultiGraph[str]") -> s
         shown = laid if len(units) <= _MOST_LAID else ()
         drawn[f"step-{step.number}"] = _step_svg(step, lines, height, units, slides, shown)
         laid |= dict.fromkeys(mark for mark in (*step.assemblies, *step.marks) if mark in units)
-    shared = shared_pictures(drawn, drawn)
-    said = words["card"] | {"counted": words["card"]["at_hand"], "extras": words["card"]["extras_up"]}
-    cards = [_card(plan, step, words, f"step-{step.number}") for step in plan.steps]
+    card = words["card"] | {"counted": words["card"]["at_hand"], "extras": words["card"]["extras_up"]}
     people = max((step.crew for step in plan.steps), default=0)
     told = words["cover"]["crew"].format(steps=len(plan.steps), people=people, days=ceil(schedule.days))
-    sections = (
-        f"<p>{escape(told)}</p>",
-        *_findings(plan, words),
-        contents(_chapters(plan, words), words["page"]["contents"], words["list"]["hold"]),
-        *(card_section(card, said, shared.pictures) for card in cards),
-    )
-    steps = [
-        {"number": s.number, "title": s.title, "marks": " ".join(dict.fromkeys((*s.assemblies, *s.marks)))}
-        for s in plan.steps
-    ]
     data = {
+        "kind": "graph",
         "language": plan.language,
         "title": plan.name,
         "name": plan.name,
-        "kind": "graph",
-        "words": words | {"foot": words["sequence_foot"], "subtitle": words["sequence"]},
+        "words": words
+        | {"foot": words["sequence_foot"], "subtitle": words["sequence"], "card": card, "read": {"lines": []}},
+        "cover": {"picture": "", "told": told, "totals": None},
+        "findings": finding_lines(plan.findings, plan.language),
+        "chapters": _chapters(plan, words),
+        "schedule": "",
+        "cards": [_card(plan, step, words, f"step-{step.number}") for step in plan.steps],
+        **dict.fromkeys(("phases", "maps", "layings", "lockings", "segments"), ()),
     }
-    example = next(iter(units), "")
-    return filled_page(data, "\n".join(sections), steps, shared.defs, words["page"]["search"].format(example=example))
+    handled = ((s.number, s.title, dict.fromkeys((*s.assemblies, *s.marks))) for s in plan.steps)
+    return filled_page(Booklet(data, drawn), handled, next(iter(units), ""))
