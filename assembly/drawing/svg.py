@@ -70,9 +70,10 @@ def path(points: Floats, closed: bool = True) -> str:
     return f'<path d="{_steps(points)}{"Z" if closed else ""}"/>'
 
 
-def polylines(lines: Iterable[Floats]) -> str:
-    """Return open lines, each through points (n, 2), as one shape, to be painted by its group."""
-    return f'<path d="{"".join(map(_steps, lines))}"/>'
+def polylines(lines: Iterable[Floats], closed: bool = False) -> str:
+    """Return lines or polygons, each through points (n, 2), as one shape, to be painted by its group."""
+    end = "Z" if closed else ""
+    return f'<path d="{"".join(_steps(points) + end for points in lines)}"/>'
 
 
 def polygon(points: Floats, style: Style) -> str:
