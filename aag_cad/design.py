@@ -20,7 +20,7 @@ from aag_cad.design_sections import (
     SurfaceSection,
 )
 from aag_cad.errors import DesignError
-from aag_cad.resources import shipped_names, shipped_text
+from aag_cad.resources import shipped_text
 
 # A hexagon turned by 30 degrees is wider by 1 / cos 30: between 60 degree nodes and that, a stud has to be thinner.
 _LEAST_FLATS = math.cos(math.radians(30.0))
@@ -306,11 +306,6 @@ def parse_design(text: str, source: str = "design") -> Design:
         return Design.model_validate(data)
     except ValidationError as error:
         raise DesignError(f"{source}:\n{_explain(error)}") from error
-
-
-def shipped_designs() -> list[str]:
-    """Return the names of the shipped designs, sorted."""
-    return shipped_names("designs", ".toml")
 
 
 def design_text(name_or_path: str) -> tuple[str, str]:

@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from aag_cad.design import Design, design_text, load_design, parse_design, shipped_designs
+from aag_cad.design import Design, design_text, load_design, parse_design
 from aag_cad.errors import AagError, DesignError, FileError
+from aag_cad.resources import shipped_names
 
 VAULT = design_text("vault")[0]
 FREE_KEYS = (
@@ -48,12 +49,12 @@ def refusal(text: str) -> str:
 
 
 def test_the_vault_is_shipped_and_read(design: Design) -> None:
-    assert "vault" in shipped_designs()
+    assert "vault" in shipped_names("designs", ".toml")
     assert parse_design(VAULT) == design == load_design("vault")
 
 
 def test_every_shipped_design_is_valid() -> None:
-    for name in shipped_designs():
+    for name in shipped_names("designs", ".toml"):
         assert load_design(name).project.name == name
 
 

@@ -34,6 +34,10 @@ def test_every_template_ships_inside_the_package(wheel: zipfile.ZipFile) -> None
     assert "templates/designs/vault.toml" in shipped
 
 
+def test_both_packages_say_that_they_are_typed(wheel: zipfile.ZipFile) -> None:
+    assert {"aag_cad/py.typed", "assembly/py.typed"} <= set(wheel.namelist())
+
+
 def test_the_command_is_declared(wheel: zipfile.ZipFile) -> None:
     entry = next(name for name in wheel.namelist() if name.endswith("entry_points.txt"))
     assert "aag = aag_cad.cli:app" in wheel.read(entry).decode()

@@ -1,5 +1,6 @@
 """Surfaces of revolution in the chart (s, theta) whose diagonals are the asymptotic curves."""
 
+import math
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
@@ -144,3 +145,11 @@ class AsymptoticChart:
             duv=jet.duv * rate,
             dvv=jet.dvv,
         )
+
+
+def turn(angle: float) -> Floats:
+    """Return the rotation (4, 4) by an angle in radians about the vertical axis through the origin."""
+    motion = np.eye(4)
+    cos, sin = math.cos(angle), math.sin(angle)
+    motion[:2, :2] = [[cos, -sin], [sin, cos]]
+    return motion

@@ -75,13 +75,3 @@ def fundamental_forms(jet: Jet) -> Forms:
         M=dot(jet.duv, normal),
         N=dot(jet.dvv, normal),
     )
-
-
-def gauss_curvature(forms: Forms) -> Floats:
-    """Return K = (LN - M^2) / (EG - F^2), (n,) 1/mm2; asymptotic curves exist where it is negative."""
-    return (forms.L * forms.N - forms.M**2) / (forms.E * forms.G - forms.F**2)
-
-
-def mean_curvature(forms: Forms) -> Floats:
-    """Return H = (EN - 2FM + GL) / 2(EG - F^2), (n,) 1/mm."""
-    return (forms.E * forms.N - 2 * forms.F * forms.M + forms.G * forms.L) / (2 * (forms.E * forms.G - forms.F**2))

@@ -8,9 +8,7 @@ twist and normal curvature left out. Derivations: docs/prefabrication.md.
 
 import math
 from collections import defaultdict
-from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -20,8 +18,7 @@ from aag_cad.errors import NetworkError
 from aag_cad.geometry.framed import curvatures_at, frames_at, nearest_station
 from aag_cad.geometry.surface import dot
 from aag_cad.parts.forming import formed_points, plank_axes
-from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Beam, Gridshell, Plank
+from aag_cad.parts.model import Beam, Plank
 from aag_cad.units import Floats, Ints
 
 # Plane curves are kept as complex numbers x + i y, mm.
@@ -49,40 +46,18 @@ class CoupledPair:
     spacing: float
     thickness: float
 
-    @property
-    def drilled_turn(self) -> Floats:
-        """The angles (m - 1,) that the drilled differences ask for, bay by bay, radians; positive to the left."""
-        return np.diff(self.right - self.left) / self.spacing
-
-
-@dataclass(frozen=True)
-class Bay:
-    """From one joint to a next one: distances on both planks, and s times the integral of kappa_g as a check; mm."""
-
-    start: str
-    end: str
-    left: float
-    right: float
-    expected: float
-
-    @property
-    def difference(self) -> float:
-        """Right minus left, mm: positive where the beam turns to the left."""
-        return self.right - self.left
-
 
 @dataclass(frozen=True)
 class SprungShape:
     """How far a released pair is from its developed target curve, between its first and last coupling; mm.
 
-    ``fitted`` is the largest distance after the best rigid motion, ``tangent_fixed`` that at the last coupling with the
-    first point and tangent held. ``force`` is the largest axial force that is locked in the planks, N.
+    ``fitted`` is the largest distance after the best rigid motion. ``force`` is the largest axial force that is locked
+    in the planks, N.
     """
 
     target_sagitta: float
     sagitta: float
     fitted: float
-    tangent_fixed: float
     force: float
 
 
@@ -153,14 +128,6 @@ def coupled_pair(beam: Beam, left: Plank, right: Plank) -> CoupledPair:
     )
 
 
-def coupled_pairs(gridshell: Gridshell) -> Iterator[CoupledPair]:
-    """Yield the couplings of every beam of every shell."""
-    for shell in gridshell.shells:
-        planks = index_of(shell).planks
-        for beam in shell.beams:
-            yield coupled_pair(beam, *(planks[mark] for mark in beam.planks))
-
-
 def geodesic_turn(beam: Beam, stations: Floats) -> Floats:
     """Return the integrals (m - 1,) of the geodesic curvature of a beam's curve between stations (m,), radians."""
     turn = np.zeros(len(stations) - 1)
@@ -174,20 +141,6 @@ def geodesic_turn(beam: Beam, stations: Floats) -> Floats:
     return turn
 
 
-def _between(pair: CoupledPair, chosen: list[int]) -> list[Bay]:
-    expected = pair.spacing * geodesic_turn(pair.beam, pair.stations[chosen])
-    return [
-        Bay(
-            pair.joints[i],
-            pair.joints[j],
-            float(pair.left[j] - pair.left[i]),
-            float(pair.right[j] - pair.right[i]),
-            float(turn),
-        )
-        for (i, j), turn in zip(pairwise(chosen), expected, strict=True)
-    ]
-
-
 def node_indices(pair: CoupledPair) -> list[int]:
     """Return which couplings are studs: two bolts side by side hold the planks there, one in a block.
 
@@ -197,14 +150,9 @@ def node_indices(pair: CoupledPair) -> list[int]:
     return studs if len(studs) > 1 else list(range(len(pair.joints)))
 
 
-def node_bays(pair: CoupledPair) -> list[Bay]:
-    """Return the bays from stud to stud: what a tape along both planks shows."""
-    return _between(pair, node_indices(pair))
-
-
-def coupling_bays(pair: CoupledPair) -> list[Bay]:
-    """Return the bays from coupling to coupling, studs and blocks: between two of them the planks are free."""
-    return _between(pair, list(range(len(pair.joints))))
+def node_differences(pair: CoupledPair) -> Floats:
+    """Return right minus left (m - 1,) from stud to stud, mm: what a tape shows; positive where the beam turns left."""
+    return np.diff((pair.right - pair.left)[node_indices(pair)])
 
 
 def plane_curve(angle: Floats, stations: Floats) -> PlaneCurve:
@@ -284,15 +232,8 @@ def sprung_shape(pair: CoupledPair, left: Floats, right: Floats, modulus: float,
         target_sagitta=largest_sagitta(target),
         sagitta=largest_sagitta(curve),
         fitted=fitted_deviation(curve, target),
-        tangent_fixed=float(abs(curve[-1] - target[-1])),
         force=float(modulus * width * pair.thickness * strain.max()),
     )
-
-
-def middle_rise(curve: PlaneCurve) -> float:
-    """Return the distance of the middle sample of a plane curve from its chord, positive to the right of it, mm."""
-    chord = curve[-1] - curve[0]
-    return float(-((curve[len(curve) // 2] - curve[0]) * np.conj(chord)).imag / abs(chord))
 
 
 def hole_error_effect(pair: CoupledPair, error: float = HOLE_ERROR) -> HoleErrorEffect:
@@ -325,6 +266,6 @@ def hole_error_effect(pair: CoupledPair, error: float = HOLE_ERROR) -> HoleError
 
 def _curvature_error(pair: CoupledPair, joint_error: Floats) -> float:
     nodes = node_indices(pair)
-    bays = np.diff((pair.right - pair.left)[nodes])
+    bays = node_differences(pair)
     errors = np.hypot(joint_error[nodes[1:]], joint_error[nodes[:-1]])
     return float(np.linalg.norm(errors) / np.linalg.norm(bays)) if bays.any() else math.inf

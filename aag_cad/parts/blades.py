@@ -8,7 +8,7 @@ import numpy as np
 
 from aag_cad.design import Design
 from aag_cad.geometry.framed import frames_at, nearest_station
-from aag_cad.geometry.patches import turn
+from aag_cad.geometry.revolution import turn
 from aag_cad.geometry.surface import unit
 from aag_cad.network.model import LEFT_RIDGE, RIGHT_RIDGE, CurveNetwork, NetworkCurve
 from aag_cad.network.ridge import ridge_distance

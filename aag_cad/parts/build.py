@@ -11,7 +11,7 @@ import numpy as np
 from aag_cad.design import Design
 from aag_cad.families import GEODESICS
 from aag_cad.geometry.framed import FramedCurve, frames_at
-from aag_cad.geometry.patches import turn
+from aag_cad.geometry.revolution import turn
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork
 from aag_cad.parts.blades import BladeJoint, blade_joints, own_sides
 from aag_cad.parts.clearance import Obstacle, near_parts, obstacles

@@ -5,7 +5,6 @@ section 3.2). Holes go right through, so a plank may also be turned end for end 
 """
 
 import math
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
@@ -209,8 +208,3 @@ def drilled_joints(group: DrillGroup, planks: Sequence[Plank]) -> tuple[tuple[st
         tuple(by_mark[member.mark].blank.holes[member.holes[i]].joint for member in group.members)
         for i in range(len(group.master.blank.holes))
     )
-
-
-def group_sizes(groups: Iterable[DrillGroup]) -> dict[int, int]:
-    """Return how many groups there are of each number of planks, smallest first."""
-    return dict(sorted(Counter(len(group.members) for group in groups).items()))

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from OCP.BRep import BRep_Builder
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepClass3d import BRepClass3d_SolidClassifier
-from OCP.BRepGProp import BRepGProp
 from OCP.Geom import (
     Geom_BSplineCurve,
     Geom_BSplineSurface,
@@ -17,7 +16,6 @@ from OCP.Geom import (
 )
 from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Curve, Geom2d_Line
 from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d
-from OCP.GProp import GProp_GProps
 from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array1OfPnt2d, TColgp_Array2OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_ShapeEnum, TopAbs_State
@@ -168,13 +166,6 @@ def solid(faces: Sequence[TopoDS_Face]) -> TopoDS_Solid:
     _BUILDER.MakeSolid(made)
     _BUILDER.Add(made, shell)
     return made
-
-
-def signed_volume(shape: TopoDS_Shape, error: float = 1e-6) -> float:
-    """Return the volume in mm3 to a relative error; negative where the faces turn inwards."""
-    properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties, error)
-    return float(properties.Mass())
 
 
 def checked(shape: TopoDS_Solid, mark: str) -> TopoDS_Solid:

@@ -32,13 +32,6 @@ def formed_plank(plank: FlatBar) -> TopoDS_Solid:
     return brep.checked(drilled_board(_formed_skin(plank, spline, corners), ends, bores), plank.mark)
 
 
-def straight_blank(plank: FlatBar) -> TopoDS_Solid:
-    """Return the straight drilled blank in blank coordinates (x along it from its start); SolidError if invalid."""
-    _require_square_ends(plank)
-    blank = plank.blank
-    return brep.checked(drilled_box(0.0, blank.length, blank.section, blank.holes, plank.mark), plank.mark)
-
-
 def drilled_box(start: float, end: float, section: CrossSection, holes: tuple[Hole, ...], mark: str) -> TopoDS_Solid:
     """Return the box along x, centred on it, with holes along z; SolidError names the mark if a hole breaks out."""
     y, z = section.width / 2.0, section.thickness / 2.0

@@ -16,7 +16,7 @@ from aag_cad.errors import DesignError
 from aag_cad.units import Floats
 from aag_cad.web.energies import a_net, bottom_curve, constant_angle, fairness, geodesic
 from aag_cad.web.goals import Goals, Iteration, Optimised, PointGoal, Reason
-from aag_cad.web.nets import largest_bending, largest_twist
+from aag_cad.web.line_curvatures import largest_bending, largest_twist
 from aag_cad.web.normal_equations import Factorisation, best_factorisation, gauss_newton_step
 from aag_cad.web.quality import WebQuality, quality
 from aag_cad.web.targets import bending_radius, closeness, height, held_points, span, twist

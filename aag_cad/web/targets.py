@@ -8,7 +8,7 @@ from scipy.sparse import csr_array, diags_array
 
 from aag_cad.units import Floats, Ints
 from aag_cad.web.goals import PointGoal
-from aag_cad.web.nets import LINES, geodesic_curvature, geodesic_torsion, normal_curvature
+from aag_cad.web.line_curvatures import LINES, geodesic_curvature, geodesic_torsion, normal_curvature
 from aag_cad.web.terms import Term, stacked, term, vertex_numbers
 from aag_cad.web.web import Web
 

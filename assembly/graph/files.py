@@ -7,11 +7,9 @@ from xml.etree.ElementTree import ParseError
 
 import networkx as nx
 
-from aag_cad.parts.store import read_gridshell
 from aag_cad.resources import shipped_names, shipped_text
 from assembly.base.errors import PlanError
 from assembly.graph.faults import GraphProblem, graph_problems, refuse
-from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.laying_units import is_laid, joint_name
 
 SCHEMA_VERSION = 1
@@ -230,11 +228,6 @@ def read_graphml(text: str) -> "nx.MultiGraph[str]":
         for a, b, joined in ((a, b, _joined(values)) for a, b, values in found.edges(data=True))
     ]
     return _assembled(str(found.graph.get("name", "")), nodes, edges)
-
-
-def graph_of_gridshell_json(text: str) -> "nx.MultiGraph[str]":
-    """Return the graph of the gridshell in a ``gridshell.json``; FileError where that does not fit."""
-    return assembly_graph(read_gridshell(text))
 
 
 def shipped_graphs() -> list[str]:

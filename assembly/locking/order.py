@@ -7,7 +7,7 @@ docs/locking.md.
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from itertools import chain, combinations
+from itertools import chain
 from typing import TypeAlias
 
 from aag_cad.parts.marks import in_other_shell, short_mark
@@ -57,22 +57,6 @@ def greedy_order(groups: Sequence[Group], value: Value, first: Sequence[Group] =
 def area_under(order: Sequence[Group], value: Value) -> float:
     """Return the sum of the values after each step of an order."""
     return sum(value(frozenset(order[: i + 1])) for i in range(len(order)))
-
-
-def best_order(groups: Sequence[Group], value: Value, first: Sequence[Group] = ()) -> tuple[Group, ...]:
-    """Return the best of all orders that begin with ``first`` by its area; 2^n values for n groups left.
-
-    Dynamic programming: the best order of a set ends with some group, and is the best order of the others before it.
-    """
-    left = [item for item in groups if item not in first]
-    start = frozenset(first)
-    best: dict[frozenset[Group], tuple[float, tuple[Group, ...]]] = {frozenset(): (0.0, ())}
-    for size in range(1, len(left) + 1):
-        for chosen in map(frozenset, combinations(left, size)):
-            before = [(*best[chosen - {last}], last) for last in left if last in chosen]
-            area, order, last = max(before, key=lambda item: item[0])
-            best[chosen] = area + value(start | chosen), (*order, last)
-    return (*first, *best[frozenset(left)][1])
 
 
 def lowest_eigenvalue(model: LockingModel) -> Value:

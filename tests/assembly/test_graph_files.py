@@ -13,12 +13,11 @@ from shipped_weaves import circle_graph, kagome_graph
 
 from aag_cad.errors import FileError
 from aag_cad.parts.model import Gridshell
-from aag_cad.parts.store import gridshell_json
+from aag_cad.parts.store import gridshell_json, read_gridshell
 from assembly.base.errors import PlanError
 from assembly.graph.faults import EDGE_KINDS, graph_problems
 from assembly.graph.files import (
     graph_json,
-    graph_of_gridshell_json,
     graph_text,
     graphml,
     read_graph,
@@ -109,7 +108,7 @@ def test_the_vault_is_read_back_as_it_was(vault_graph: "Graph[str]") -> None:
 
 
 def test_the_graph_of_gridshell_json_is_that_of_the_gridshell(gridshell: Gridshell, vault_graph: "Graph[str]") -> None:
-    assert equal(graph_of_gridshell_json(gridshell_json(gridshell)), vault_graph)
+    assert equal(assembly_graph(read_gridshell(gridshell_json(gridshell))), vault_graph)
 
 
 def test_every_id_of_a_graphml_file_stands_for_one_thing(vault_graph: "Graph[str]") -> None:

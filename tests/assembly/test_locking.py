@@ -1,7 +1,8 @@
 """The order of fixing the flat planks: greedy against all orders, soft modes against rigidity, and the vault."""
 
+from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise, permutations
+from itertools import combinations, pairwise, permutations
 from xml.etree import ElementTree
 
 import numpy as np
@@ -16,12 +17,12 @@ from aag_cad.parts.model import Gridshell, Shell
 from aag_cad.pipeline import gridshell_of
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
-from assembly.base.locking_order import LockingOrder, frequency
+from assembly.base.locking_order import Group, LockingOrder, frequency
 from assembly.locking.model import GRAVITY, LockingModel, locking_model, modes_of, sag_of
 from assembly.locking.order import (
     SAG_LIMIT,
+    Value,
     area_under,
-    best_order,
     edge_groups,
     greedy_order,
     locking_order,
@@ -66,6 +67,22 @@ def self_weight(frame: ShellFrame) -> tuple[NodalLoad, ...]:
         NodalLoad(node, (0.0, 0.0, -GRAVITY * weight))
         for node, weight in zip(nodes, frame.masses.tolist(), strict=True)
     )
+
+
+def best_order(groups: Sequence[Group], value: Value, first: Sequence[Group] = ()) -> tuple[Group, ...]:
+    """Return the best of all orders that begin with ``first`` by its area; 2^n values for n groups left.
+
+    Dynamic programming: the best order of a set ends with some group, and is the best order of the others before it.
+    """
+    left = [item for item in groups if item not in first]
+    start = frozenset(first)
+    best: dict[frozenset[Group], tuple[float, tuple[Group, ...]]] = {frozenset(): (0.0, ())}
+    for size in range(1, len(left) + 1):
+        for chosen in map(frozenset, combinations(left, size)):
+            before = [(*best[chosen - {last}], last) for last in left if last in chosen]
+            area, order, last = max(before, key=lambda item: item[0])
+            best[chosen] = area + value(start | chosen), (*order, last)
+    return (*first, *best[frozenset(left)][1])
 
 
 def test_the_states_are_those_of_a_frame_built_anew_with_the_planks_that_are_fixed(small: Gridshell) -> None:

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
+from web_curves import a_curve_normal_curvature
 
 from aag_cad.geometry.profiles import ArcProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.web.goals import Goals
-from aag_cad.web.interpolation import a_curve_normal_curvature
 from aag_cad.web.optimise import optimise
 from aag_cad.web.web import sampled_web
 

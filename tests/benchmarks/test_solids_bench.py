@@ -3,10 +3,11 @@
 from pathlib import Path
 
 from pytest_benchmark.fixture import BenchmarkFixture
+from solid_figures import straight_blank
 
 from aag_cad.export.cad.step import write_step
 from aag_cad.parts.model import Gridshell
-from aag_cad.solids.planks import formed_plank, straight_blank
+from aag_cad.solids.planks import formed_plank
 from aag_cad.solids.products import product_solids
 
 

@@ -12,7 +12,7 @@ import pytest
 from aag_cad.errors import FileError
 from aag_cad.export.office.optimise_report import report_html, write_report
 from aag_cad.web.goals import Goals, Iteration, Optimised, PointGoal, Reason
-from aag_cad.web.nets import largest_bending
+from aag_cad.web.line_curvatures import largest_bending
 from aag_cad.web.quality import quality
 from aag_cad.web.web import Web, crpc_web
 

@@ -21,6 +21,7 @@ from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_ShapeTool
+from solid_figures import signed_volume
 
 from aag_cad.design import Design
 from aag_cad.errors import FileError, SolidError
@@ -33,14 +34,13 @@ from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, all_parts, ridge_
 from aag_cad.parts.products import part_frame, product_key, product_name
 from aag_cad.parts.triangles import Mesh
 from aag_cad.pipeline import gridshell_of
-from aag_cad.solids.brep import signed_volume
 from aag_cad.solids.products import product_solids
 from aag_cad.units import Floats
 
 WRITE_AGAIN = """
 import sys
 from pathlib import Path
-sys.path.insert(0, sys.argv[1])
+sys.path[:0] = [sys.argv[1], str(Path(sys.argv[1]).parent)]
 from test_step import excerpt_of
 from aag_cad.design import load_design
 from aag_cad.export.cad.step import write_step

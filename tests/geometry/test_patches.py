@@ -5,9 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from aag_cad.errors import SurfaceError
-from aag_cad.geometry.patches import (
+from patches import (
     Patch,
     border,
     copied,
@@ -23,10 +21,11 @@ from aag_cad.geometry.patches import (
     polar_array,
     reflection,
     shift,
-    turn,
 )
+
+from aag_cad.errors import SurfaceError
 from aag_cad.geometry.profiles import CrpcProfile, HyperboloidProfile
-from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
+from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface, turn
 from aag_cad.geometry.surface import Jet
 from aag_cad.units import Floats
 

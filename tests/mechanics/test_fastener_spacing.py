@@ -16,7 +16,6 @@ from aag_cad.mechanics.checks.fastener_spacing import (
     bolt_distances,
     screw_distances,
     shortfalls,
-    slot_for_turn,
 )
 from aag_cad.network.model import CurveNetwork
 from aag_cad.parts.build import gridshell_from
@@ -58,12 +57,6 @@ def test_distances_do_not_depend_on_the_sense_of_force_or_grain(
     for angle in np.linspace(0.1, 1.5, 5):
         assert distances(angle) == distances(-angle)
         assert astuple(distances(angle)) == pytest.approx(astuple(distances(math.pi - angle)))
-
-
-def test_a_slot_for_three_and_a_half_degrees_is_3_mm_longer_than_round() -> None:
-    """24 mm sin(turn) to either side at the outer face of 12 mm planks 24 mm apart."""
-    assert slot_for_turn(math.radians(3.5), 24.0, 12.0) == pytest.approx(2.0 * 24.0 * math.sin(math.radians(3.5)))
-    assert slot_for_turn(math.radians(-3.5), 24.0, 12.0) == pytest.approx(2.93, abs=0.01)
 
 
 def _with_holes(gridshell: Gridshell, change: Callable[[list[Hole]], list[Hole]]) -> Gridshell:

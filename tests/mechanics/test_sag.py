@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from coupled import coupled_pairs
 from scipy.integrate import cumulative_trapezoid
 from scipy.optimize import brentq
 
@@ -21,7 +22,7 @@ from aag_cad.mechanics.sag import (
     slope,
     stand_layout,
 )
-from aag_cad.mechanics.siblings import CoupledPair, coupled_pairs
+from aag_cad.mechanics.siblings import CoupledPair
 from aag_cad.parts.model import Gridshell
 from aag_cad.units import Floats
 

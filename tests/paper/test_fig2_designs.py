@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from patches import Patch, border, distance_outside, joined
+from shell_patches import shell_patches
 
 from aag_cad.audit import audit
 from aag_cad.design import Design, load_design
 from aag_cad.findings import Finding
-from aag_cad.geometry.patches import Patch, border, distance_outside, joined
-from aag_cad.network.shells import shell_patches
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell
 from aag_cad.pipeline import Build, build, chart_of, gridshell_of

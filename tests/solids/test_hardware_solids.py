@@ -13,10 +13,10 @@ from OCP.GeomAbs import GeomAbs_SurfaceType
 from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Shape, TopoDS_Solid
+from solid_figures import signed_volume
 
 from aag_cad.errors import SolidError
 from aag_cad.parts.model import Bolt, CouplingBlock, CrossHole, Frame, Hole, Screw, Stud
-from aag_cad.solids.brep import signed_volume
 from aag_cad.solids.hardware import block_solid, bolt_solid, screw_solid, stud_solid
 from aag_cad.units import Floats
 

@@ -18,6 +18,7 @@ from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_ShapeEnum, TopAbs_State
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape, TopoDS_Solid
+from solid_figures import signed_volume, straight_blank
 
 from aag_cad.errors import SolidError
 from aag_cad.geometry.framed import FramedCurve, framed_curve, offset_curve
@@ -26,8 +27,8 @@ from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.geometry.surface import unit_normals
 from aag_cad.parts.forming import formed_points, plank_axes
 from aag_cad.parts.model import Blank, CrossSection, EndCut, Hole, Plank
-from aag_cad.solids.brep import checked, signed_volume, solid
-from aag_cad.solids.planks import formed_plank, straight_blank
+from aag_cad.solids.brep import checked, solid
+from aag_cad.solids.planks import formed_plank
 from aag_cad.units import Floats
 
 SECTION = CrossSection(width=100.0, thickness=12.0)

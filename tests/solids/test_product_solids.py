@@ -1,6 +1,7 @@
 """Every distinct product of the vault has one valid solid, and equal parts share it."""
 
 import pytest
+from solid_figures import signed_volume
 
 from aag_cad.design import Design
 from aag_cad.parts.mesh import product_mesh
@@ -8,7 +9,6 @@ from aag_cad.parts.model import Gridshell, Part, all_parts, ridge_parts, shell_p
 from aag_cad.parts.products import product_key
 from aag_cad.parts.quantities import volume
 from aag_cad.pipeline import gridshell_of
-from aag_cad.solids.brep import signed_volume
 from aag_cad.solids.products import product_solid, product_solids
 
 

@@ -8,6 +8,7 @@ from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Shape, TopoDS_Solid
+from solid_figures import signed_volume
 
 from aag_cad.design import Design
 from aag_cad.geometry.developable import ruled_edges
@@ -15,7 +16,6 @@ from aag_cad.geometry.framed import offset_curve
 from aag_cad.network.model import CurveId, CurveNetwork
 from aag_cad.parts.model import Strip
 from aag_cad.parts.strips import flat_pattern, sheet_of, strip_depth
-from aag_cad.solids.brep import signed_volume
 from aag_cad.solids.strips import strip_solid
 
 

@@ -4,16 +4,18 @@ import math
 
 import numpy as np
 import pytest
+from curvatures import gauss_curvature
+from web_curves import a_curve_normal_curvature, surface_line
 
 from aag_cad.design import Design
 from aag_cad.errors import SurfaceError
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.geometry.profiles import CrpcProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
-from aag_cad.geometry.surface import fundamental_forms, gauss_curvature
+from aag_cad.geometry.surface import fundamental_forms
 from aag_cad.pipeline import web_of
 from aag_cad.units import Floats
-from aag_cad.web.interpolation import a_curve_normal_curvature, interpolated_surface, surface_line
+from aag_cad.web.interpolation import interpolated_surface
 from aag_cad.web.web import Web, crpc_web, sampled_web
 
 R0, RATIO, AXIS = 5100.0, 3.0, -8823.0

@@ -6,30 +6,32 @@ from functools import partial
 
 import numpy as np
 import pytest
+from other_nets import (
+    AsymptoticMesh,
+    aag_net,
+    asymptotic_mesh,
+    g_net,
+    interleaved,
+    mesh_a_net,
+    mesh_aag_net,
+    mesh_geodesic,
+    opposite_angles_deg,
+    star_planarity,
+)
 
 from aag_cad.geometry.darboux import ParameterCurve, darboux
 from aag_cad.geometry.profiles import CrpcProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.units import Floats
 from aag_cad.web.energies import a_net
-from aag_cad.web.nets import (
+from aag_cad.web.line_curvatures import (
     LINES,
-    AsymptoticMesh,
     Line,
-    aag_net,
-    asymptotic_mesh,
-    g_net,
     geodesic_curvature,
     geodesic_torsion,
-    interleaved,
     largest_bending,
     largest_twist,
-    mesh_a_net,
-    mesh_aag_net,
-    mesh_geodesic,
     normal_curvature,
-    opposite_angles_deg,
-    star_planarity,
 )
 from aag_cad.web.quality import quality
 from aag_cad.web.terms import Term

@@ -12,7 +12,7 @@ from aag_cad.pages import html_page
 from aag_cad.units import MM_PER_M, Floats, deg_per_m
 from aag_cad.web.energies import constant_angle, symmetry
 from aag_cad.web.goals import Goals, Optimised
-from aag_cad.web.nets import LINES, geodesic_curvature, largest_bending, largest_twist, normal_curvature
+from aag_cad.web.line_curvatures import LINES, geodesic_curvature, largest_bending, largest_twist, normal_curvature
 from aag_cad.web.quality import WebQuality, quality
 from aag_cad.web.web import Web
 

@@ -14,7 +14,7 @@ from aag_cad.mechanics.siblings import (
     SprungShape,
     coupled_pair,
     hole_error_effect,
-    node_bays,
+    node_differences,
     over_drill_shift,
     over_drilled,
     sprung_shape,
@@ -75,7 +75,7 @@ def prefabrication_row(made: Prefabrication) -> tuple[str, ...]:
     """
     pair, stands = made.pair, made.stands
     studs = sum(holes > 1 for holes in pair.holes)
-    bays = [bay.difference for bay in node_bays(pair)]
+    bays = node_differences(pair).tolist()
     difference = pair.right - pair.left
     differences = (float(difference[-1] - difference[0]), min(bays, key=abs), max(bays, key=abs))
     share = made.errors.curvature

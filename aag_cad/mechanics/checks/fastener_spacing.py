@@ -89,15 +89,6 @@ def table_of(use: HoleUse, diameter: float) -> str:
     return f"EN 1995-1-1, table {'8.4' if use == 'bolt' or diameter > _SCREW_AS_NAIL else '8.2'}"
 
 
-def slot_for_turn(turn: float, gap: float, thickness: float) -> float:
-    """Return how much longer than round a stud bolt's slot has to be for a node to turn by +-turn radians, mm.
-
-    The bolt leaves the plank at its outer face, gap / 2 + thickness from the stud's axis: there it travels that times
-    sin(turn) to either side. 24 mm gap and 12 mm planks: 24 mm sin(turn) a side.
-    """
-    return 2.0 * (gap / 2.0 + thickness) * math.sin(abs(turn))
-
-
 def _diameters(gridshell: Gridshell) -> Diameters:
     """Return the largest diameter of the bolts and of the screws of each joint."""
     fasteners = index_of(gridshell).bolts | index_of(gridshell).screws

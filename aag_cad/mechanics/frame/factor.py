@@ -1,6 +1,5 @@
 """Sparse factors that are checked: a mechanism is an error, where SuperLU alone gives huge numbers without a word."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,8 +18,6 @@ _PERTURBED = 1e-9
 _NO_SHIFT = 1e-10
 _STANDS_STILL = 1e-8
 _MOST_ROUNDS = 60
-
-Solve = Callable[[Floats], Floats]
 
 
 class SingularError(ArithmeticError):

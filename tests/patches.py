@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from aag_cad.errors import SurfaceError
-from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
+from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface, turn
 from aag_cad.geometry.surface import Surface, unit, unit_normals
 from aag_cad.units import Floats, Vector
 
@@ -35,14 +35,6 @@ def shift(by: Floats) -> Floats:
     """Return the motion (4, 4) by a vector (3,), mm."""
     motion: Floats = np.eye(4)
     motion[:3, 3] = by
-    return motion
-
-
-def turn(angle: float) -> Floats:
-    """Return the rotation (4, 4) by an angle in radians about the vertical axis through the origin."""
-    motion = np.eye(4)
-    cos, sin = math.cos(angle), math.sin(angle)
-    motion[:2, :2] = [[cos, -sin], [sin, cos]]
     return motion
 
 
