@@ -2,8 +2,9 @@
 
 import os
 import uuid
-from collections.abc import Iterator
-from datetime import date, datetime, time, timedelta
+from datetime import UTC, date, datetime, time, timedelta
+
+import icalendar
 
 from aag_cad.files import write_bytes
 from aag_cad.language import Figure, say
@@ -16,7 +17,6 @@ from assembly.plan.schedule import Schedule, ScheduledStep
 # Work begins at seven; breaks are not drawn.
 BEGINS = time(7)
 _DAYS = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
-_OCTETS = 75
 # The name space of the events' identifiers: made once, kept for good.
 _NAMESPACE = uuid.UUID("6d0c2f0a-5a0b-5f0e-9a53-8c1f4b7d2e61")
 
@@ -48,26 +48,6 @@ def times_of(step: ScheduledStep, schedule: Schedule, start: date, days_per_week
     return clock(first, begin), clock(last, end)
 
 
-def _escaped(text: str) -> str:
-    """Return a text as the value of a property (RFC 5545, 3.3.11)."""
-    for plain, escaped in (("\\", "\\\\"), (";", "\\;"), (",", "\\,"), ("\r\n", "\\n"), ("\n", "\\n"), ("\r", "\\n")):
-        text = text.replace(plain, escaped)
-    return text
-
-
-def folded(line: str) -> str:
-    """Return a content line folded at 75 octets, never within a character, with its line end (RFC 5545, 3.1)."""
-    pieces, piece, room = [], "", _OCTETS
-    for character in line:
-        octets = len(character.encode("utf-8"))
-        if octets > room:
-            pieces.append(piece)
-            # The space that begins a continued line is one of its octets.
-            piece, room = "", _OCTETS - 1
-        piece, room = piece + character, room - octets
-    return "\r\n ".join([*pieces, piece]) + "\r\n"
-
-
 def _description(plan: Plan, step: Step) -> str:
     def word(key: str, **figures: Figure) -> str:
         return say(plan.language, f"schedule.calendar.{key}", **figures)
@@ -86,38 +66,37 @@ def _description(plan: Plan, step: Step) -> str:
     return "\n".join(line for line in lines if line)
 
 
-def _event(plan: Plan, step: Step, begin: datetime, end: datetime, stamp: str) -> Iterator[str]:
-    yield "BEGIN:VEVENT"
-    yield f"UID:{uuid.uuid5(_NAMESPACE, f'{plan.name}/{step.id}')}"
-    yield f"DTSTAMP:{stamp}"
-    yield f"DTSTART:{begin:%Y%m%dT%H%M%S}"
-    yield f"DTEND:{end:%Y%m%dT%H%M%S}"
-    yield f"SUMMARY:{_escaped(f'{step.number} {step.title}')}"
-    yield f"DESCRIPTION:{_escaped(_description(plan, step))}"
-    yield f"CATEGORIES:{_escaped(phase_name(step.phase, plan.language))}"
-    yield "END:VEVENT"
+def _event(plan: Plan, step: Step, begin: datetime, end: datetime, stamp: datetime) -> icalendar.Event:
+    event = icalendar.Event()
+    event.add("UID", str(uuid.uuid5(_NAMESPACE, f"{plan.name}/{step.id}")))
+    event.add("DTSTAMP", stamp)
+    event.add("DTSTART", begin)
+    event.add("DTEND", end)
+    event.add("SUMMARY", f"{step.number} {step.title}")
+    event.add("DESCRIPTION", _description(plan, step))
+    event.add("CATEGORIES", [phase_name(step.phase, plan.language)])
+    return event
 
 
-def calendar_text(plan: Plan, schedule: Schedule, start: date, days_per_week: int = 5) -> str:
-    """Return the calendar of a scheduled plan from its first working day, in lines that end with CR LF.
+def calendar_bytes(plan: Plan, schedule: Schedule, start: date, days_per_week: int = 5) -> bytes:
+    """Return the calendar of a scheduled plan from its first working day, in UTF-8 and lines that end with CR LF.
 
     Times are those of the place, whatever its zone; an event that runs on over night is one event. The time stamp is
-    the first day, so that the text does not depend on when it was written. PlanError if that is not a working day.
+    the first day, so that the bytes do not depend on when they were written. PlanError if that is not a working day.
     """
-    stamp = f"{start:%Y%m%d}T000000Z"
-    lines = [
-        "BEGIN:VCALENDAR",
-        "VERSION:2.0",
-        f"PRODID:-//AAG toolkit//assembly schedule//{plan.language.upper()}",
-        "CALSCALE:GREGORIAN",
-    ]
+    stamp = datetime.combine(start, time(), UTC)
+    calendar = icalendar.Calendar()
+    calendar.add("VERSION", "2.0")
+    calendar.add("PRODID", f"-//AAG toolkit//assembly schedule//{plan.language.upper()}")
+    calendar.add("CALSCALE", "GREGORIAN")
     for step, when in zip(plan.steps, schedule.steps, strict=True):
-        lines += _event(plan, step, *times_of(when, schedule, start, days_per_week), stamp)
-    return "".join(folded(line) for line in (*lines, "END:VCALENDAR"))
+        calendar.add_component(_event(plan, step, *times_of(when, schedule, start, days_per_week), stamp))
+    data: bytes = calendar.to_ical(sorted=False)
+    return data
 
 
 def write_calendar(
     plan: Plan, schedule: Schedule, start: date, path: str | os.PathLike[str], days_per_week: int = 5
 ) -> None:
-    """Write the calendar of a scheduled plan; PlanError as ``calendar_text``, FileError if it cannot be written."""
-    write_bytes(path, calendar_text(plan, schedule, start, days_per_week).encode("utf-8"))
+    """Write the calendar of a scheduled plan; PlanError as ``calendar_bytes``, FileError if it cannot be written."""
+    write_bytes(path, calendar_bytes(plan, schedule, start, days_per_week))
