@@ -1,9 +1,9 @@
 """The A and G curves of an interpolated web as framed curves, and how far its A curves are from asymptotic."""
 
 import numpy as np
+from darboux import ParameterCurve, darboux
 
 from aag_cad.errors import SurfaceError
-from aag_cad.geometry.darboux import ParameterCurve, darboux
 from aag_cad.geometry.framed import FramedCurve, framed_curve
 from aag_cad.geometry.surface import unit_normals
 from aag_cad.units import Floats

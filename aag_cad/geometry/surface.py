@@ -1,4 +1,4 @@
-"""Surfaces as 2-jets: first and second fundamental forms, normals and curvatures."""
+"""Surfaces as 2-jets: first and second fundamental forms, and normals."""
 
 from dataclasses import dataclass
 from typing import Protocol

@@ -9,12 +9,12 @@ import math
 import numpy as np
 import pytest
 from curvatures import gauss_curvature, mean_curvature
+from darboux import Darboux, ParameterCurve, darboux
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.special import gamma
 
-from aag_cad.geometry.darboux import Darboux, ParameterCurve, darboux
 from aag_cad.geometry.profiles import CrpcProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.geometry.surface import fundamental_forms

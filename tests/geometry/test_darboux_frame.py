@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 from curvatures import gauss_curvature, mean_curvature
+from darboux import Darboux, ParameterCurve, darboux
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Chebyshev
 
-from aag_cad.geometry.darboux import Darboux, ParameterCurve, darboux
 from aag_cad.geometry.profiles import CrpcProfile
 from aag_cad.geometry.revolution import RevolutionSurface
 from aag_cad.geometry.surface import Jet, dot, fundamental_forms

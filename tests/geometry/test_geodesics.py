@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from darboux import ParameterCurve, darboux
 from numpy.polynomial import Chebyshev
 
 from aag_cad.errors import NetworkError
-from aag_cad.geometry.darboux import ParameterCurve, darboux
 from aag_cad.geometry.geodesic import geodesic_acceleration, geodesic_between
 from aag_cad.geometry.profiles import CrpcProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface

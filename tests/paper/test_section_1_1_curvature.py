@@ -5,8 +5,8 @@ Not asserted: anything about the bending of real timber; planks are ideal strips
 
 import numpy as np
 import pytest
+from darboux import Darboux, ParameterCurve, darboux
 
-from aag_cad.geometry.darboux import Darboux, ParameterCurve, darboux
 from aag_cad.geometry.framed import curvatures_at, frames_at
 from aag_cad.geometry.revolution import AsymptoticChart
 from aag_cad.geometry.surface import fundamental_forms

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from darboux import ParameterCurve, darboux
 from other_nets import (
     AsymptoticMesh,
     aag_net,
@@ -19,7 +20,6 @@ from other_nets import (
     star_planarity,
 )
 
-from aag_cad.geometry.darboux import ParameterCurve, darboux
 from aag_cad.geometry.profiles import CrpcProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.units import Floats

@@ -1,4 +1,4 @@
-"""Curves on surfaces: Darboux frame, normal curvature, geodesic curvature and geodesic torsion."""
+"""Curves on surfaces, to test with: Darboux frame, normal and geodesic curvature, geodesic torsion (paper, 1.1)."""
 
 from dataclasses import dataclass
 
