@@ -1,6 +1,5 @@
 """What a shell or a gridshell holds, by mark: made at the first question and kept, so that nobody builds it again."""
 
-import weakref
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -8,6 +7,7 @@ from functools import cached_property
 from typing import Protocol, TypeVar
 
 from aag_cad.families import EDGES, GEODESICS
+from aag_cad.once import once
 from aag_cad.parts.model import (
     Beam,
     Bolt,
@@ -156,18 +156,10 @@ class Index:
         return found
 
 
-_KEPT: dict[int, Index] = {}
-
-
+@once
 def index_of(whole: Shell | Gridshell) -> Index:
     """Return what a shell, or a whole gridshell, holds by mark: the same index at every call for the same object."""
-    if id(whole) not in _KEPT:
-        if isinstance(whole, Shell):
-            # Its own index does not hold a shell, which else would live as long as the index.
-            index = Index((), whole.beams, shell_parts(whole), whole.joints)
-        else:
-            beams = tuple(beam for shell in whole.shells for beam in shell.beams)
-            index = Index(whole.shells, beams, all_parts(whole), all_joints(whole))
-        _KEPT[id(whole)] = index
-        weakref.finalize(whole, _KEPT.pop, id(whole))
-    return _KEPT[id(whole)]
+    if isinstance(whole, Shell):
+        return Index((), whole.beams, shell_parts(whole), whole.joints)
+    beams = tuple(beam for shell in whole.shells for beam in shell.beams)
+    return Index(whole.shells, beams, all_parts(whole), all_joints(whole))
