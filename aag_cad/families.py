@@ -27,10 +27,10 @@ class FamilyRow:
 
 
 FAMILIES: dict[Family, FamilyRow] = {
-    "A1": FamilyRow("asymptotic", -1, "#1f3d70", "plank"),
+    "A1": FamilyRow("asymptotic", -1, "#1d3a6b", "plank"),
     "A2": FamilyRow("asymptotic", 1, "#d9683a", "plank"),
     "G": FamilyRow("geodesic", 0, "#e3b040", "geodesic"),
-    "E": FamilyRow("edge", 0, "#2f6b57", "edge_plank"),
+    "E": FamilyRow("edge", 0, "#2f6c58", "edge_plank"),
 }
 
 
@@ -38,4 +38,6 @@ def _along(curve: CurveKind) -> tuple[Family, ...]:
     return tuple(family for family, row in FAMILIES.items() if row.curve == curve)
 
 
+# The family of each layer that is laid flat, from the lowest up.
+LAYERS: dict[int, Family] = {FAMILIES[family].layer: family for family in ("A1", "G", "A2")}
 BEAMS, GEODESICS, EDGES = _along("asymptotic"), _along("geodesic"), _along("edge")

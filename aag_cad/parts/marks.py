@@ -140,6 +140,16 @@ def whole_of(text: str) -> str:
     return str(replace(parse_mark(text), part=""))
 
 
+def piece_mark(plank: str, segment: str) -> str:
+    """Return the name of the piece of a cut plank that is in a segment."""
+    return f"{plank}@{segment}"
+
+
+def plank_of(text: str) -> str:
+    """Return the mark of the plank of a piece, or of a whole plank itself."""
+    return text.partition("@")[0]
+
+
 def joint_of(text: str) -> str:
     """Return the mark of the joint that a bolt, screw or threaded rod belongs to, or "" for what is none."""
     found = _FASTENER.fullmatch(text)

@@ -2,6 +2,7 @@
 
 from typing import TypeAlias
 
+from aag_cad.families import Family
 from aag_cad.language import Language, figure, say
 from aag_cad.parts.model import (
     Blade,
@@ -28,9 +29,18 @@ _BARS: dict[type[_Bar], str] = {
 }  # fmt: skip
 
 
+# The key of the words that say where a layer lies.
+LAYER_WORDS = {-1: "below", 0: "between", 1: "above"}
+
+
 def phase_name(phase: Phase, language: Language = "en") -> str:
     """Return the short name of a phase, of putting together or of taking down."""
     return say(language, f"{'down' if phase in DOWN_PHASES else 'phases'}.{phase}.name")
+
+
+def family_name(family: Family, language: Language = "en") -> str:
+    """Return the letters of a family of planks and what they are called: ``A1 lower beam``."""
+    return f"{family} {say(language, f'parts.family.{family}')}"
 
 
 def part_name(part: Part, language: Language = "en") -> str:

@@ -4,12 +4,12 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from aag_cad.colours import LEGEND
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import number_of, parse_mark, short_mark
 from aag_cad.parts.model import Beam, CouplingBlock, Plank, Shell
 from assembly.drawing.svg import Style, circle, group, label_svg, placed_labels, rectangle, svg, text
 
-_PLANK = Style("#d9d9d9", "#000", 1.5)
 _BLOCK = Style("#000")
 _OPEN = Style("#fff", "#000", 2.0)
 _INK = Style("#000")
@@ -30,7 +30,7 @@ def _strip(
     tops = (y - half - _PLANK_HEIGHT, y + half)
     yield group(
         (rectangle(_LEFT, top, p.blank.length * scale, _PLANK_HEIGHT) for p, top in zip(planks, tops, strict=True)),
-        _PLANK,
+        Style(LEGEND[beam.family], "#000", 1.5),
     )
     places = [(place.joint, _LEFT + place.station * scale) for place in beam.joints]
     made = [(mark, x, blocks[mark].length * scale) for mark, x in places if mark in blocks]

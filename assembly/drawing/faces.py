@@ -5,20 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from aag_cad.colours import LEGEND, srgb
 from aag_cad.parts.mesh import frame_matrix, shell_mesh
 from aag_cad.parts.model import Footing, Gridshell, Part, Shell, Stud
 from aag_cad.parts.triangles import regular_polygon
 from aag_cad.units import Floats
 from assembly.drawing.part_outlines import plank_rings
 
-COLOURS = {
-    "A1": (58, 112, 152),
-    "A2": (208, 94, 54),
-    "G": (236, 194, 98),
-    "E": (156, 116, 72),
-    "C": (172, 169, 162),
-    "": (92, 86, 80),
-}
 LEAST_SPACING = 110.0
 _MOST_SEGMENTS = 7000.0
 _STUD_PIECES = 8
@@ -77,19 +70,19 @@ def _shell_faces(shell: Shell, spacing: float) -> Iterator[tuple[Floats, str]]:
     for plank in shell.planks:
         yield placed_points(tube_faces(plank_rings(plank, spacing)), shell), plank.family
     for stud in shell.studs:
-        yield placed_points(_stud_faces(stud), shell), ""
+        yield placed_points(_stud_faces(stud), shell), "stud"
     fittings: tuple[Part, ...] = (*shell.shoes, *shell.straps)
     for part in fittings:
         mesh = shell_mesh(part)
-        yield placed_points(mesh.vertices, shell)[mesh.faces[:, [0, 1, 2, 2]]], ""
+        yield placed_points(mesh.vertices, shell)[mesh.faces[:, [0, 1, 2, 2]]], "steel"
     for footing in shell.footings:
-        yield placed_points(_top_face(footing), shell), "C"
+        yield placed_points(_top_face(footing), shell), "concrete"
 
 
 def _blade_faces(gridshell: Gridshell) -> Iterator[tuple[Floats, str]]:
     for blade in gridshell.blades:
         mesh = shell_mesh(blade)
-        yield mesh.vertices[mesh.faces[:, [0, 1, 2, 2]]], ""
+        yield mesh.vertices[mesh.faces[:, [0, 1, 2, 2]]], "steel"
 
 
 def gridshell_faces(gridshell: Gridshell) -> Faces:
@@ -97,5 +90,5 @@ def gridshell_faces(gridshell: Gridshell) -> Faces:
     spacing = picture_spacing(gridshell)
     listed = [item for shell in gridshell.shells for item in _shell_faces(shell, spacing)]
     listed += _blade_faces(gridshell)
-    colours = [np.tile(np.array(COLOURS[family], dtype=float), (len(faces), 1)) for faces, family in listed]
+    colours = [np.tile(255.0 * np.array(srgb(LEGEND[name])), (len(faces), 1)) for faces, name in listed]
     return Faces(np.concatenate([faces for faces, _ in listed]), np.concatenate(colours))

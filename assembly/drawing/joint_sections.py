@@ -4,15 +4,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from aag_cad.colours import LEGEND
+from aag_cad.families import BEAMS, FAMILIES
 from aag_cad.language import Language, figure, say
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Bolt, CrossSection, Shell
+from assembly.base.names import family_name
 from assembly.drawing.svg import Style, circle, group, line, polygon, rectangle, svg, text
 
-_CUT = Style("#bdbdbd", "#000", 2.0)
-_OPEN = Style("#fff", "#000", 2.0)
 _INK = Style("#000")
-_THIN = Style("none", "#000", 1.5)
+_THIN, _HALO = Style("none", "#000", 1.5), Style("none", "#fff", 4.0)
 
 _UNIT = 2.0
 _AXIS = 200.0
@@ -21,7 +22,8 @@ _WORDS = 24.0
 
 def callout(x: float, y: float, to_x: float, to_y: float, words: str, size: float = _WORDS) -> Iterator[str]:
     """Yield a line from a place on a part to words at its right."""
-    yield line(np.array([(to_x, to_y), (x, y)]), _THIN)
+    for style in (_HALO, _THIN):
+        yield line(np.array([(to_x, to_y), (x, y)]), style)
     yield group([circle((to_x, to_y), 3.0), text(words, x + 8.0, y, size, "start")], _INK)
 
 
@@ -29,11 +31,16 @@ def _word(language: Language, key: str, **sizes: float) -> str:
     return say(language, f"pictures.sections.{key}", **{k: figure(f"{v:g}", language) for k, v in sizes.items()})
 
 
-def _beam(middle: float, section: CrossSection, gap: float) -> str:
+def _cut(name: str) -> Style:
+    """Return how a part is drawn that is cut, by its name in the legend."""
+    return Style(LEGEND[name], "#000", 2.0)
+
+
+def _beam(middle: float, section: CrossSection, gap: float, family: str) -> str:
     """Return the two planks of a beam in section; ``middle`` is the height of their centres on the sheet."""
     wide, thick = _UNIT * section.width, _UNIT * section.thickness
     left, right = _AXIS - _UNIT * gap / 2.0 - thick, _AXIS + _UNIT * gap / 2.0
-    return group((rectangle(x, middle - wide / 2.0, thick, wide) for x in (left, right)), _CUT)
+    return group((rectangle(x, middle - wide / 2.0, thick, wide) for x in (left, right)), _cut(family))
 
 
 def _bolt(y: float, bolt: Bolt) -> str:
@@ -51,7 +58,7 @@ def _bolt(y: float, bolt: Bolt) -> str:
         piece(half, washer, bolt.washer_diameter),
         piece(half + washer, nut, bolt.across_flats),
     )
-    return group(pieces, _INK)
+    return group(pieces, Style("#000", "#fff", 1.0))
 
 
 def node_section_svg(shell: Shell, *, language: Language = "en") -> str:
@@ -60,14 +67,14 @@ def node_section_svg(shell: Shell, *, language: Language = "en") -> str:
     bolt = index_of(shell).bolts[index_of(shell).joints[stud.mark].fasteners[0]]
     section = plank.blank.section
     centre, long, flat = _UNIT * stud.length / 2.0 + 20.0, _UNIT * stud.length, _UNIT * stud.across_flats
-    items = [group([rectangle(_AXIS - flat / 2.0, centre - long / 2.0, flat, long)], _OPEN)]
+    items = [group([rectangle(_AXIS - flat / 2.0, centre - long / 2.0, flat, long)], _cut("stud"))]
     lift = _UNIT * (section.width + section.thickness) / 2.0
-    items += [_beam(centre + side * lift, section, stud.across_flats) for side in (-1.0, 1.0)]
+    items += [_beam(centre - FAMILIES[beam].layer * lift, section, stud.across_flats, beam) for beam in BEAMS]
     items += [_bolt(centre - _UNIT * hole.height, bolt) for hole in stud.holes]
     right, plank_x = _AXIS + 130.0, _AXIS + flat / 2.0 + _UNIT * section.thickness / 2.0
-    items += callout(right, centre - lift, plank_x, centre - lift, _word(language, "upper"))
+    items += callout(right, centre - lift, plank_x, centre - lift, family_name("A2", language))
     items += callout(right, centre, _AXIS, centre, _word(language, "stud", length=stud.length))
-    items += callout(right, centre + lift, plank_x, centre + lift, _word(language, "lower"))
+    items += callout(right, centre + lift, plank_x, centre + lift, family_name("A1", language))
     return svg(720.0, 2.0 * centre, items)
 
 
@@ -79,9 +86,9 @@ def block_section_svg(shell: Shell, *, language: Language = "en") -> str:
     section = next(plank for plank in shell.planks if plank.upright).blank.section
     top, thick, wide, gap = 80.0, _UNIT * section.thickness, _UNIT * section.width, _UNIT * block.thickness
     low = top + thick
-    items = [group([rectangle(_AXIS - gap / 2.0, low, gap, wide)], _OPEN)]
-    items.append(_beam(low + wide / 2.0, section, block.thickness))
-    items.append(group([rectangle(_AXIS - 180.0, top, 360.0, thick)], _CUT))
+    items = [group([rectangle(_AXIS - gap / 2.0, low, gap, wide)], _cut("block"))]
+    items.append(_beam(low + wide / 2.0, section, block.thickness, "A1"))
+    items.append(group([rectangle(_AXIS - 180.0, top, 360.0, thick)], _cut("G")))
     away = low + wide / 2.0 + _UNIT * max((abs(hole.offset) for hole in block.holes), default=0.0)
     items += [_bolt(away, bolts[mark]) for mark in fasteners if mark in bolts]
     head, shank, tip = _UNIT * screw.head_diameter / 2.0, _UNIT * screw.diameter / 2.0, _UNIT * screw.length
@@ -91,7 +98,8 @@ def block_section_svg(shell: Shell, *, language: Language = "en") -> str:
     right, plank_x = _AXIS + 210.0, _AXIS + gap / 2.0 + thick / 2.0
     driven = _word(language, "screw", diameter=screw.diameter, length=screw.length)
     items += callout(right, top - 45.0, _AXIS, top, driven)
-    items += callout(right, top + thick / 2.0, _AXIS + 150.0, top + thick / 2.0, _word(language, "geodesic"))
+    slides = say(language, "pictures.sections.slides", name=family_name("G", language))
+    items += callout(right, top + thick / 2.0, _AXIS + 150.0, top + thick / 2.0, slides)
     items += callout(right, low + 0.4 * wide, _AXIS + gap / 3.0, low + 0.4 * wide, _word(language, "block"))
-    items += callout(right, low + 0.9 * wide, plank_x, low + 0.9 * wide, _word(language, "lower"))
+    items += callout(right, low + 0.9 * wide, plank_x, low + 0.9 * wide, family_name("A1", language))
     return svg(870.0, low + wide + 20.0, items)

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
+from aag_cad.colours import LEGEND
 from aag_cad.geometry.framed import frames_at
 from aag_cad.language import Language, figure, say
 from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
@@ -13,14 +14,14 @@ from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Blade, Bolt, FlatBar, FoldedPlate, Frame, Gridshell, Joint, Plank, Shell, Shoe, Strap
 from aag_cad.parts.plates import plate_rings
 from aag_cad.units import Floats, vector
+from assembly.base.names import family_name
 from assembly.drawing.joint_sections import callout
 from assembly.drawing.part_outlines import Flat
 from assembly.drawing.svg import CHARACTER, Style, line, path, polygon, svg
 
-_TIMBER = Style("#d9c7a3", "#000", 1.5)
-_STEEL = Style("#7a2a8c", "#000", 1.0)
+_STEEL = Style(LEGEND["steel"], "#000", 1.0)
 _BOLT = Style("#222", "#fff", 0.6)
-_CONCRETE = Style("#d0d0d0", "#000", 1.5)
+_CONCRETE = Style(LEGEND["concrete"], "#000", 1.5)
 _GROUND = Style("none", "#000", 2.5, "14 8")
 _UNIT = 1.6
 _SIZE = 34.0
@@ -107,6 +108,12 @@ def _sheet(items: Sequence[str], points: Floats, words: Sequence[tuple[Floats, s
     return svg(reach, height, [moved, *told])
 
 
+def _timber(outlines: Iterable[Floats], planks: Iterable[Plank]) -> Iterator[str]:
+    """Yield the sections of planks in the colours of their families."""
+    for outline, plank in zip(outlines, planks, strict=True):
+        yield polygon(outline, Style(LEGEND[plank.family], "#000", 1.5))
+
+
 def _members(shell: Shell, joint: Joint) -> list[Plank]:
     planks = index_of(shell).planks
     return [planks[mark] for mark in joint.members if mark in planks]
@@ -131,14 +138,14 @@ def foot_section_svg(shell: Shell, shoe: Shoe, named: bool, *, language: Languag
     upright = np.mean(shoe.plate.line[-3:-1], axis=0) * [_UNIT, -_UNIT]
     items = [
         polygon(block, _CONCRETE),
-        *(polygon(outline, _TIMBER) for outline in timber),
+        *_timber(timber, (geodesic, edge)),
         polygon(plate, _STEEL),
         *(polygon_of(item, _BOLT) for item in _pieces(rod_pieces(rod), rod.frame, flat)),
         *_bolt_items(bolts, flat),
         line(np.array([(top[0] - side - 60.0, top[1]), (top[0] + side + 60.0, top[1])]), _GROUND),
     ]
     words = [
-        (timber[0].mean(axis=0), _word(language, "geodesic")),
+        (timber[0].mean(axis=0), family_name(geodesic.family, language)),
         (timber[1].mean(axis=0), _word(language, "bottom")),
         (upright, _word(language, "shoe", thick=shoe.plate.thickness)),
         (
@@ -163,10 +170,10 @@ def strap_section_svg(shell: Shell, strap: Strap, *, language: Language = "en") 
     end = geodesic.blank.length
     timber = [flat(_band(geodesic, end - _ALONG, end)), flat(_cross(edge, joint.mark))]
     steel, middle = flat(_band(strap, 0.0, strap.curve.length)), strap.curve.length / 2.0
-    items = [*(polygon(outline, _TIMBER) for outline in timber), polygon(steel, _STEEL), *_bolt_items(bolts, flat)]
+    items = [*_timber(timber, (geodesic, edge)), polygon(steel, _STEEL), *_bolt_items(bolts, flat)]
     words = [
-        (timber[0].mean(axis=0), _word(language, "geodesic")),
-        (timber[1].mean(axis=0), _word(language, "edge")),
+        (timber[0].mean(axis=0), family_name(geodesic.family, language)),
+        (timber[1].mean(axis=0), family_name(edge.family, language)),
         (
             flat(_band(strap, middle, middle))[0],
             _word(language, "strap", thick=strap.blank.section.thickness),
@@ -184,7 +191,7 @@ def blade_section_svg(gridshell: Gridshell, blade: Blade, *, language: Language 
     marks = [mark for mark in joint.members if mark in planks]
     timber = [flat(_cross(planks[mark][0], joint.mark, frame_matrix(planks[mark][1]))) for mark in marks]
     plate = _plate(blade.plate)
-    items = [*(polygon(outline, _TIMBER) for outline in timber), polygon(plate, _STEEL), *_bolt_items(bolts, flat)]
+    items = [*_timber(timber, [planks[mark][0] for mark in marks]), polygon(plate, _STEEL), *_bolt_items(bolts, flat)]
     words = [(outline.mean(axis=0), mark) for outline, mark in zip(timber, marks, strict=True)]
     told = _word(language, "blade", mark=blade.mark, thick=blade.plate.thickness)
     words.append((plate[len(plate) // 4], told))

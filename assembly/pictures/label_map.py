@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from aag_cad.families import BEAMS, EDGES, GEODESICS
+from aag_cad.colours import mixed
+from aag_cad.families import BEAMS, EDGES, FAMILIES, GEODESICS
 from aag_cad.language import Language, say
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import number_of, parse_mark, short_mark
@@ -34,8 +35,8 @@ _DOT = 8.0
 _FOOT = 60.0
 _AWAY = 29.0
 
-_PLANKS = {"A1": Style("#cfcfcf", "#777", 1.0), "G": Style("#fff", "#777", 1.2), "A2": Style("#f0f0f0", "#777", 1.0)}
-_EDGE = Style("#fff", "#000", 2.0)
+# Pale, for the marks stand over them.
+_PLANKS = {family: Style(mixed(row.colour, "#ffffff", 0.7), "#777", 1.0) for family, row in FAMILIES.items()}
 _INK = Style("#000")
 _OPEN = Style("#fff", "#000", 2.5)
 
@@ -55,7 +56,7 @@ def _lines(shell: Shell, outline: Outline) -> dict[str, Floats]:
 def _plank_items(shell: Shell, outline: Outline) -> Iterator[str]:
     planks = index_of(shell).planks
     for mark, points in outline.planks.items():
-        yield group([path(points)], _PLANKS.get(planks[mark].family, _EDGE))
+        yield group([path(points)], _PLANKS[planks[mark].family])
 
 
 def _names(lines: dict[str, Floats], sheet: Box, taken: list[Box]) -> str:

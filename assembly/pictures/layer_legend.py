@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from aag_cad.colours import LEGEND, mixed
+from aag_cad.families import LAYERS
 from aag_cad.geometry.framed import frames_at
 from aag_cad.geometry.surface import unit
 from aag_cad.language import Language, figure, say
@@ -16,6 +18,7 @@ from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Beam, CouplingBlock, Joint, Plank, Shell, Stud
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
+from assembly.base.names import LAYER_WORDS, family_name
 from assembly.base.shell_axes import shell_view
 from assembly.drawing.joint_sections import callout
 from assembly.drawing.svg import Style, group, line, path, rectangle, svg, text
@@ -30,9 +33,8 @@ _WIDTH, _HEIGHT = 1800.0, 960.0
 _LIFT = {-1: 0.0, 0: 95.0, 1: 265.0}
 _AZIMUTH, _ELEVATION = np.radians(-76.0), np.radians(30.0)
 
-_SHADES = {-1: ("#a8a8a8", "#8a8a8a"), 0: ("#fff", "#f2f2f2"), 1: ("#e2e2e2", "#cfcfcf")}
-_BLOCK_SHADES = ("#555", "#3c3c3c")
-_STUD_SHADES = ("#fff", "#fff")
+# Each colour of the legend on top, and darker at the sides.
+_SHADES = {name: (code, mixed(code, "#000000", 0.15)) for name, code in LEGEND.items()}
 _EDGE = 2.2
 _AXIS = Style("none", "#000", 2.0, "9 6")
 _THIN = Style("none", "#000", 1.5)
@@ -166,7 +168,7 @@ def _beam(node: _Node, layer: int, shell: Shell) -> list[tuple[Floats, tuple[str
     long = _LONG / 2.0 + max(abs(far) + _BEYOND, _LONG / 2.0) if layer < 0 else _LONG
     height = height + np.copysign((long - _LONG) / 2.0, far) * along
     size = (long, section.thickness, section.width)
-    return [(_board(height + side * half * across, along, size), _SHADES[layer]) for side in (-1.0, 1.0)]
+    return [(_board(height + side * half * across, along, size), _SHADES[LAYERS[layer]]) for side in (-1.0, 1.0)]
 
 
 def _apart(node: _Node, shell: Shell, centre: Floats, language: Language) -> Iterator[str]:
@@ -176,12 +178,16 @@ def _apart(node: _Node, shell: Shell, centre: Floats, language: Language) -> Ite
     def sheet(point: Floats) -> Floats:
         return np.asarray(centre + _UNITS * (axes[:2] @ point) * [1.0, -1.0])
 
+    def told(layer: int) -> str:
+        name = family_name(LAYERS[layer], language)
+        return say(language, f"drawings.layers.{LAYER_WORDS[layer]}", name=name)
+
     flat = next(iter(index_of(shell).geodesics.values())).blank.section
     lower, upper = _beam(node, -1, shell), _beam(node, 1, shell)
     block = _board(
         node.beside - [0.0, 0.0, node.offset], node.lower, (node.block.length, node.block.thickness, node.block.width)
     )
-    inner = [(block, _BLOCK_SHADES), (_hexagon(node), _STUD_SHADES)]
+    inner = [(block, _SHADES["block"]), (_hexagon(node), _SHADES["stud"])]
     inner.sort(key=lambda item: float((item[0] @ axes[2]).mean()))
     for corners, shades in (lower[0], *inner, lower[1]):
         yield from _solid(corners, shades, axes, centre)
@@ -190,23 +196,23 @@ def _apart(node: _Node, shell: Shell, centre: Floats, language: Language) -> Ite
     hung = np.array([0.0, 0.0, _LIFT[1] + node.offset])
     yield line(np.array([sheet(node.beside), sheet(held)]), _AXIS)
     lying = _board(held, node.along, (_LONG, flat.width, flat.thickness))
-    yield from _solid(lying, _SHADES[0], axes, centre)
+    yield from _solid(lying, _SHADES[LAYERS[0]], axes, centre)
     yield from _solid(*upper[0], axes, centre)
     yield line(np.array([sheet(top), sheet(hung)]), _AXIS)
     yield from _solid(*upper[1], axes, centre)
     section = next(plank for plank in shell.planks if plank.upright).blank.section
     end = np.array([0.0, 0.0, -section.width / 2.0]) + 0.4 * _LONG * _rightwards(node.lower)
-    shown = node.block.width / 2.0 - node.offset
+    shown, block_word = node.block.width / 2.0 - node.offset, say(language, "drawings.layers.block")
     words = (
-        ("above", sheet(upper[1][0].mean(axis=0) + 0.3 * _LONG * _rightwards(node.upper))),
-        ("between", sheet(held + 0.35 * _LONG * _rightwards(node.along))),
-        ("block", sheet(node.beside + 0.42 * node.block.length * _rightwards(node.lower) + [0.0, 0.0, shown])),
-        ("below", sheet(lower[1][0].mean(axis=0) + end - [0.0, 0.0, -section.width / 2.0])),
+        (told(1), sheet(upper[1][0].mean(axis=0) + 0.3 * _LONG * _rightwards(node.upper))),
+        (told(0), sheet(held + 0.35 * _LONG * _rightwards(node.along))),
+        (block_word, sheet(node.beside + 0.42 * node.block.length * _rightwards(node.lower) + [0.0, 0.0, shown])),
+        (told(-1), sheet(lower[1][0].mean(axis=0) + end - [0.0, 0.0, -section.width / 2.0])),
     )
     x, y = float(centre[0]) + _UNITS * (0.5 * _LONG + 90.0), -np.inf
     for word, place in sorted(words, key=lambda item: float(item[1][1])):
         y = max(float(place[1]), y + 1.7 * _WORDS)
-        yield from callout(x, y, float(place[0]), float(place[1]), say(language, f"drawings.layers.{word}"), _WORDS)
+        yield from callout(x, y, float(place[0]), float(place[1]), word, _WORDS)
     place = sheet(0.7 * top)
     words_left = say(language, "drawings.layers.stud", length=f"{node.stud.length:g}")
     yield line(np.array([place, place - [52.0, 74.0]]), _THIN)
@@ -226,18 +232,15 @@ def _together(node: _Node, shell: Shell, centre: Floats, language: Language) -> 
         )
 
     half = node.stud.length / 2.0
-    yield box(-node.stud.across_flats / 2.0, -half, node.stud.across_flats, 2.0 * half, _STUD_SHADES[0])
+    yield box(-node.stud.across_flats / 2.0, -half, node.stud.across_flats, 2.0 * half, _SHADES["stud"][0])
     for layer in (-1, 1):
         for left in (-gap / 2.0 - thick, gap / 2.0):
-            yield box(left, layer * node.offset - wide / 2.0, thick, wide, _SHADES[layer][0])
+            yield box(left, layer * node.offset - wide / 2.0, thick, wide, _SHADES[LAYERS[layer]][0])
     aside = gap / 2.0 + thick + 14.0
-    yield box(aside, -flat.thickness / 2.0, flat.width, flat.thickness, _SHADES[0][0])
-    names = [("A2", node.offset, -aside - 8.0), ("A1", -node.offset, -aside - 8.0)]
-    yield group([text(name, x + k * left, y - k * high, 1.2 * _WORDS, bold=True) for name, high, left in names], _INK)
-    yield group(
-        [text("G", x + k * (aside + flat.width / 2.0), y - k * flat.thickness / 2.0 - 24.0, 1.2 * _WORDS, bold=True)],
-        _INK,
-    )
+    yield box(aside, -flat.thickness / 2.0, flat.width, flat.thickness, _SHADES[LAYERS[0]][0])
+    beside, above = x + k * (aside + flat.width / 2.0), y - k * flat.thickness / 2.0 - 24.0
+    places = {layer: (x - k * (aside + 8.0), y - k * layer * node.offset) for layer in (1, -1)} | {0: (beside, above)}
+    yield group((text(LAYERS[layer], *at, 1.2 * _WORDS, bold=True) for layer, at in places.items()), _INK)
     faces = [half, *(layer * node.offset + side * wide / 2.0 for layer in (1, -1) for side in (1, -1)), -half]
     yield from _heights(faces, x - k * (aside + 36.0), x - k * 4.0, centre, "end", language)
     right = x + k * (aside + flat.width)

@@ -10,11 +10,14 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from aag_cad.colours import LEGEND
+from aag_cad.families import FAMILIES, LAYERS, Family
 from aag_cad.language import Language, figure, say, says
 from aag_cad.parts.marks import number_of, short_mark
 from aag_cad.parts.model import Shell
 from aag_cad.units import MM_PER_M, Floats
 from assembly.base.errors import PlanError
+from assembly.base.names import LAYER_WORDS
 from assembly.drawing.svg import (
     Box,
     Label,
@@ -45,9 +48,6 @@ _UNITS_PER_MM = 10.0
 
 _GRID = Style("none", "#b5b5b5", 1.5)
 _FLOOR = Style("none", "#777", 2.0, "14 8")
-_LOWER = Style("#000", "#000", 1.5)
-_GEODESIC = Style("#fff", "#000", 2.0)
-_UPPER = Style("none", "#000", 3.0, "13 7")
 _FOOT = Style("none", "#000", 5.0, "30 9 5 9")
 _STUD = Style("#fff", "#000", 3.0)
 _INK = Style("#000")
@@ -130,15 +130,16 @@ def _planks(member: FlatMember, thickness: float) -> Iterator[Floats]:
 def _members(shell: Shell, state: FlatState, sheet: _Sheet) -> Iterator[str]:
     thickness = shell.planks[0].blank.section.thickness
     for member in state.members:
+        colour = LEGEND[member.family]
         if member.layer == 0:
-            yield group([path(sheet(outline_of(member)))], _GEODESIC)
+            yield group([path(sheet(outline_of(member)))], Style(colour, "#000", 2.0))
         elif member.layer < 0:
-            yield group((path(sheet(plank)) for plank in _planks(member, thickness)), _LOWER)
+            yield group((path(sheet(plank)) for plank in _planks(member, thickness)), Style(colour, colour, 1.5))
         else:
             # A dashed outline of so thin a plank would be a blot: its middle line is dashed instead.
             half = member.points.shape[0] * 2
             middles = ((p[: half // 2] + p[half // 2 :][::-1]) / 2.0 for p in _planks(member, thickness))
-            yield group((path(sheet(middle), closed=False) for middle in middles), _UPPER)
+            yield group((path(sheet(middle), closed=False) for middle in middles), Style("none", colour, 4.0, "13 7"))
 
 
 def _start(member: FlatMember, sheet: _Sheet) -> tuple[Floats, Floats]:
@@ -180,12 +181,11 @@ def _studs(state: FlatState, sheet: _Sheet, page: Box, taken: list[Box]) -> str:
     return label_svg(labels, framed=False) + group((circle(place, 8.0) for place in places.values()), _STUD)
 
 
-def _swatch(x: float, y: float, sheet: _Sheet, family: str, shell: Shell, width: float) -> str:
+def _swatch(x: float, y: float, sheet: _Sheet, family: Family, shell: Shell, width: float) -> str:
     """Return a short piece of a member as the plan draws it."""
-    layers = {"A1": -1, "G": 0, "A2": 1}
     k = sheet.n / _UNITS_PER_MM
     ends = np.array([(0.0, 0.0), (90.0 * k, 0.0)])
-    member = FlatMember("", family, layers[family], width, np.zeros(2), ends, ("", ""))
+    member = FlatMember("", family, FAMILIES[family].layer, width, np.zeros(2), ends, ("", ""))
     alone = FlatState("", (member,), {}, {}, {}, (0.0, 0.0), None, 0.0, 0.0, {}, 0.0, 0.0, "", 0.0, ())
     shapes = "".join(_members(shell, alone, _Sheet(sheet.n, (0.0, 0.0), (0.0, 0.0), _LEFT + _RIGHT, _BOTTOM)))
     return f'<g transform="translate({x - _LEFT:.1f} {y:.1f})">{shapes}</g>'
@@ -195,10 +195,10 @@ def _key(shell: Shell, state: FlatState, sheet: _Sheet, language: Language) -> I
     """Yield the line below the plan: what is drawn how, the scale and the size of the floor."""
     widths = {member.family: member.width for member in state.members}
     y, x = sheet.height - 94.0, 20.0
-    for family, word in (("A1", "layers"), ("G", "between"), ("A2", "above")):
+    for layer, family in LAYERS.items():
         if family in widths:
             yield _swatch(x, y, sheet, family, shell, widths[family])
-            words = say(language, f"drawings.plan.{word}")
+            words = say(language, f"drawings.plan.{LAYER_WORDS[layer]}", family=family)
             yield group([text(words, x + 105.0, y, _WORDS, "start")], _INK)
             x += 150.0 + 0.602 * _WORDS * len(words)
     marks: tuple[tuple[str, Callable[[], str]], ...] = (

@@ -31,13 +31,12 @@ from assembly.drawing.svg import (
     svg,
     text,
 )
+from assembly.pictures.step_pictures import NEW
 from assembly.transport.segment_sheet import splices_of
 
 WIDTH = 1800.0
 _MARGIN = 60.0
 _OTHERS = Style("#efefef", "#b9b9b9", 1.0)
-_OWN = {"A1": Style("#555", "#000", 1.5), "A2": Style("#222", "#000", 1.5)}
-_FLAT = Style("#fff", "#000", 3.5)
 _CUT = Style("none", "#000", 5.0, "22 12")
 _HALO = Style("none", "#fff", 10.0)
 _SIZE, _SMALL = 27.0, 23.0
@@ -78,7 +77,7 @@ def _timber(outline: Outline, shell: Shell, segment: Segment) -> Iterator[str]:
     yield group((path(points) for points in outline.planks.values()), _OTHERS)
     held = sorted(_held(shell, segment), key=lambda pair: (pair[0].layer, pair[0].mark))
     for plank, piece in held:
-        yield group([path(_part_of(outline, plank, piece))], _OWN.get(plank.family, _FLAT))
+        yield group([path(_part_of(outline, plank, piece))], NEW[plank.family])
 
 
 def _place(outline: Outline, shell: Shell, splice: Splice) -> Floats:

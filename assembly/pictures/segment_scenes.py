@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import is_in_shell, short_mark
+from aag_cad.parts.marks import is_in_shell, piece_mark, short_mark
 from aag_cad.parts.model import Shell
 from aag_cad.units import Floats
 from assembly.base.segments import Segment, Segmentation, Splice
@@ -54,7 +54,7 @@ def _own_planks(shell: Shell, segment: Segment) -> dict[str, tuple[str, float, f
     planks = index_of(shell).planks
     whole = {mark: (mark, 0.0, 1.0) for mark in segment.parts if mark in planks}
     cut = {
-        f"{piece.plank}@{segment.name}": (
+        piece_mark(piece.plank, segment.name): (
             piece.plank,
             piece.start / planks[piece.plank].blank.length,
             piece.end / planks[piece.plank].blank.length,

@@ -6,7 +6,9 @@ from typing import Literal
 
 import numpy as np
 
-from aag_cad.parts.marks import parse_mark, shell_of
+from aag_cad.colours import LEGEND
+from aag_cad.families import FAMILIES
+from aag_cad.parts.marks import parse_mark, plank_of, shell_of
 from aag_cad.units import Floats
 from assembly.drawing.outline import Outline
 from assembly.drawing.svg import (
@@ -27,19 +29,16 @@ from assembly.drawing.svg import (
 
 THERE = Style("#e4e4e4", "#8f8f8f", 1.2)
 LATER = Style("none", "#c4c4c4", 0.8, "5 6")
-NEW = {
-    "A1": Style("#16315e", "#000", 2.0),
-    "A2": Style("#9c3d10", "#000", 2.0),
-    "G": Style("#3f7d4e", "#000", 2.5),
-    "E": Style("#2b2b2b", "#000", 2.5),
+NEW: dict[str, Style] = {
+    family: Style(row.colour, "#000", 2.0 if row.upright else 2.5) for family, row in FAMILIES.items()
 }
 # Pieces by the family of their mark; blades are R and a pair of shells.
-STEEL = Style("#7a2a8c", "#000", 1.5)
+STEEL = Style(LEGEND["steel"], "#000", 1.5)
 PIECES = {
-    "C": Style("#bdbdbd", "#000", 2.0),
-    "P": Style("#cfe2ea", "#4b7389", 1.5),
-    "M": Style("#3d5a6c", "#000", 0.8),
-    "D": Style("#14242e", "#000", 0.8),
+    "C": Style(LEGEND["concrete"], "#000", 2.0),
+    "P": Style(LEGEND["sheet"], "#4b7389", 1.5),
+    "M": Style(LEGEND["aluminium"], "#000", 0.8),
+    "D": Style(LEGEND["aluminium"], "#000", 0.8),
 }
 FAINT_NEW = Style("#b9b9b9", "#000", 2.5)
 DOT = Style("#000", "#fff", 2.0)
@@ -146,7 +145,7 @@ def scene_items(outline: Outline, scene: Scene) -> Iterable[str]:
     yield from _piece_items(outline, scene, beneath=True)
     for mark, points in outline.planks.items():
         if mark in scene.new:
-            yield group([path(points)], NEW[parse_mark(mark).family])
+            yield group([path(points)], NEW[parse_mark(plank_of(mark)).family])
         elif mark in shown:
             yield group([path(points)], FAINT_NEW if mark in scene.worked_on else THERE)
     yield from _piece_items(outline, scene, beneath=False)

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 import trimesh
 
+from aag_cad.colours import LEGEND, linear
 from aag_cad.design import Design
 from aag_cad.errors import FileError
 from aag_cad.export.cad.gltf import write_glb
-from aag_cad.export.ifc.kinds import colour
+from aag_cad.export.ifc.kinds import colour_name
 from aag_cad.parts.mesh import placed, product_mesh, shell_mesh
-from aag_cad.parts.model import Gridshell, Plank, all_parts, ridge_parts, shell_parts
+from aag_cad.parts.model import Gridshell, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import product_key
 from aag_cad.pipeline import gridshell_of
 
@@ -79,13 +80,22 @@ def test_meshes_are_closed_and_keep_their_volume(vault: Gridshell, scene: trimes
         assert mesh.volume * 1e9 == pytest.approx(product_mesh(part).volume, rel=1e-4)
 
 
-def test_colours_are_those_of_the_families(vault: Gridshell, scene: trimesh.Scene) -> None:
+def test_base_colours_are_the_linear_intensities_of_the_legend(vault: Gridshell, tree: dict[str, Any]) -> None:
+    """GlTF multiplies light with ``baseColorFactor``: viewers turn it back into the legend's sRGB codes."""
+    found = {finish["name"]: finish["pbrMetallicRoughness"]["baseColorFactor"] for finish in tree["materials"]}
+    assert found.keys() == {colour_name(part) for part in all_parts(vault)}
+    for name, (red, green, blue, opaque) in found.items():
+        shown = [1.055 * c ** (1.0 / 2.4) - 0.055 if c > 0.0031308 else 12.92 * c for c in (red, green, blue)]
+        assert "#" + "".join(f"{round(255.0 * c):02x}" for c in shown) == LEGEND[name]
+        assert opaque == 1.0
+
+
+def test_a_reader_finds_the_colour_of_each_family_and_metal_on_bolts(vault: Gridshell, scene: trimesh.Scene) -> None:
     for part in vault.shells[0].planks:
         finish = scene.geometry[scene.graph[part.mark][1]].visual.material
-        assert finish.name == f"Plank {part.family}"
-        assert finish.baseColorFactor[:3] / 255.0 == pytest.approx(colour(part), abs=0.003)
-        assert finish.metallicFactor == 0.0
-    assert len({colour(part) for part in all_parts(vault) if isinstance(part, Plank)}) == 4
+        # The reader rounds to 8 bits.
+        assert finish.baseColorFactor[:3] / 255.0 == pytest.approx(linear(LEGEND[part.family]), abs=0.003)
+        assert (finish.name, finish.metallicFactor) == (part.family, 0.0)
     assert scene.geometry[scene.graph["S1-N-001-B1"][1]].visual.material.metallicFactor == 1.0
 
 

@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 import rhino3dm
 
+from aag_cad.colours import srgb
 from aag_cad.errors import FileError
 from aag_cad.export.cad.rhino import write_3dm
+from aag_cad.families import FAMILIES
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell
 
@@ -32,7 +34,10 @@ def test_every_plank_is_a_valid_curve_under_its_mark_on_the_layer_of_its_family(
     gridshell: Gridshell, archive: Any
 ) -> None:
     layers = [layer.Name for layer in archive.Layers]
-    assert layers == ["A1", "A2", "G", "E"]
+    assert layers == list(FAMILIES)
+    assert [layer.Color[:3] for layer in archive.Layers] == [
+        tuple(round(255.0 * value) for value in srgb(row.colour)) for row in FAMILIES.values()
+    ]
     found = {item.Attributes.Name: layers[item.Attributes.LayerIndex] for item in archive.Objects}
     assert found == {plank.mark: plank.family for shell in gridshell.shells for plank in shell.planks}
     assert len(archive.Objects) == len(found)

@@ -7,7 +7,8 @@ import numpy as np
 import trimesh
 from trimesh.visual.material import PBRMaterial
 
-from aag_cad.export.ifc.kinds import colour, colour_name
+from aag_cad.colours import LEGEND, linear
+from aag_cad.export.ifc.kinds import colour_name
 from aag_cad.files import write_bytes
 from aag_cad.parts.mesh import frame_matrix, product_mesh
 from aag_cad.parts.model import Frame, Gridshell, Part, ridge_parts, shell_parts
@@ -32,7 +33,6 @@ def _material(part: Part) -> PBRMaterial:
     metal = material(part) in ("steel", "aluminium")
     return PBRMaterial(
         name=colour_name(part),
-        baseColorFactor=[round(255.0 * value) for value in colour(part)] + [255],
         metallicFactor=1.0 if metal else 0.0,
         roughnessFactor=0.4 if metal else 0.8,
     )
@@ -66,9 +66,18 @@ def glb_scene(gridshell: Gridshell) -> trimesh.Scene:
     return scene
 
 
+def _colour_materials(tree: dict[str, Any]) -> None:
+    """Give each material of a glTF tree its colour: linear numbers, which trimesh itself would round to 8 bits."""
+    for finish in tree["materials"]:
+        factor = [round(value, 6) for value in (*linear(LEGEND[finish["name"]]), 1.0)]
+        finish["pbrMetallicRoughness"]["baseColorFactor"] = factor
+
+
 def write_glb(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     """Write the gridshell for viewers and slides; FileError if the file cannot be written.
 
     The meshes carry no normals: glTF asks viewers to shade such faces flat, which is what planks are.
     """
-    write_bytes(path, glb_scene(gridshell).export(file_type="glb", include_normals=False))
+    scene = glb_scene(gridshell)
+    data = scene.export(file_type="glb", include_normals=False, tree_postprocessor=_colour_materials)
+    write_bytes(path, data)

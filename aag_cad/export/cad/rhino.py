@@ -8,13 +8,14 @@ import uuid
 import zlib
 from typing import Any
 
+from aag_cad.colours import srgb
 from aag_cad.errors import FileError
+from aag_cad.families import FAMILIES
 from aag_cad.files import write_bytes
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Plank
 from aag_cad.units import Floats
 
-LAYERS = {"A1": (178, 78, 40, 255), "A2": (214, 142, 52, 255), "G": (52, 110, 150, 255), "E": (70, 70, 70, 255)}
 _NAMESPACE = uuid.uuid5(uuid.NAMESPACE_DNS, "aag-toolkit rhino")
 # The chunk of an openNURBS archive that holds who made it and when: typecode, then length, then what it holds.
 _REVISION_HISTORY = struct.pack("<I", 0x20008021)
@@ -39,9 +40,10 @@ def write_3dm(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     archive.Settings.ModelUnitSystem = rhino.UnitSystem.Millimeters
     archive.Settings.ModelAbsoluteTolerance = 0.001
     layers = {}
-    for family, colour in LAYERS.items():
+    for family, row in FAMILIES.items():
         layer = rhino.Layer()
-        layer.Name, layer.Color, layer.Id = family, colour, uuid.uuid5(_NAMESPACE, f"{gridshell.name} layer {family}")
+        layer.Name, layer.Color = family, (*(round(255.0 * value) for value in srgb(row.colour)), 255)
+        layer.Id = uuid.uuid5(_NAMESPACE, f"{gridshell.name} layer {family}")
         layers[family] = archive.Layers.Add(layer)
     for shell in gridshell.shells:
         for plank in sorted(shell.planks, key=lambda plank: plank.mark):

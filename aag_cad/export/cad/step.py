@@ -74,6 +74,7 @@ def _products(tools: _Tools, gridshell: Gridshell, solids: Mapping[str, TopoDS_S
         taken[name] += 1
         labels[key] = tools.shapes.AddShape(solids[key], False, False)
         named(labels[key], name if taken[name] == 1 else f"{name} ({taken[name]})")
+        # The kernel reckons with linear colours and writes COLOUR_RGB as sRGB numbers, which readers show as they are.
         tint = Quantity_Color(*colour(part), Quantity_TypeOfColor.Quantity_TOC_sRGB)
         tools.colours.SetColor(labels[key], tint, XCAFDoc_ColorType.XCAFDoc_ColorSurf)
     return {mark: labels[key] for mark, key in keys.items()}

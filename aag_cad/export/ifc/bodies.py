@@ -113,7 +113,10 @@ def _axis(model: IfcModel, plank: Plank) -> Entity:
 
 
 def surface_style(model: IfcModel, part: Part) -> Entity:
-    """Return the surface style of a part's family, as the schema assigns it to items."""
+    """Return the surface style of a part's colour, as the schema assigns it to items.
+
+    Viewers show the numbers of ``IfcColourRgb`` as they are, as those of 8 bits over 255: sRGB.
+    """
     rgb = model.file.create_entity("IfcColourRgb", None, *(round(value, 4) for value in colour(part)))
     see_through = () if model.schema == "IFC2X3" else (0.0,)
     shading = model.file.create_entity("IfcSurfaceStyleShading", rgb, *see_through)

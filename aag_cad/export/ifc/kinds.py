@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from aag_cad.colours import LEGEND, srgb
 from aag_cad.parts.model import (
     Blade,
     Bolt,
@@ -45,29 +46,27 @@ IFC_KINDS: dict[type[Part], IfcKind] = {
     Blade: IfcKind("IfcPlate", "USERDEFINED", "Ridge blade"),
 }
 
-_FAMILY_COLOURS = {"A1": "#8A4B2A", "A2": "#D9A05B", "G": "#F0D9A8", "E": "#5F7F6A"}
-_KIND_COLOURS: dict[type[Part], str] = {
-    Stud: "#5A3A1E",
-    CouplingBlock: "#A87848",
-    Bolt: "#8A9099",
-    Screw: "#B8BEC6",
-    Strip: "#CFE6F2",
-    Mullion: "#A7ADB5",
-    ClampingBar: "#C3C8CE",
-    Strap: "#6C737C",
-    Shoe: "#6C737C",
-    Rod: "#8A9099",
-    Footing: "#9C9A95",
-    Blade: "#6C737C",
+_LEGEND: dict[type[Part], str] = {
+    Stud: "stud",
+    CouplingBlock: "block",
+    Bolt: "steel",
+    Screw: "steel",
+    Strip: "sheet",
+    Mullion: "aluminium",
+    ClampingBar: "aluminium",
+    Strap: "steel",
+    Shoe: "steel",
+    Rod: "steel",
+    Footing: "concrete",
+    Blade: "steel",
 }
 
 
 def colour_name(part: Part) -> str:
-    """Return the name under which parts share a colour: the family of a plank, else the kind."""
-    return f"Plank {part.family}" if isinstance(part, Plank) else type(part).__name__
+    """Return the name of a part's colour in the legend: the family of a plank, else what it is or is made of."""
+    return part.family if isinstance(part, Plank) else _LEGEND[type(part)]
 
 
 def colour(part: Part) -> tuple[float, float, float]:
-    """Return the colour of a part as (red, green, blue), each 0 to 1."""
-    code = _FAMILY_COLOURS[part.family] if isinstance(part, Plank) else _KIND_COLOURS[type(part)]
-    return int(code[1:3], 16) / 255.0, int(code[3:5], 16) / 255.0, int(code[5:7], 16) / 255.0
+    """Return the colour of a part as sRGB numbers (red, green, blue), each 0 to 1."""
+    return srgb(LEGEND[colour_name(part)])
