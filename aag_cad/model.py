@@ -12,11 +12,11 @@ from aag_cad.web.web import Web
 
 @dataclass(frozen=True)
 class Model:
-    """A design worked out: its web with its measures, its curves with theirs, and the gridshell."""
+    """A design worked out: its web and the quality of that, its curves and how far they reach, and the gridshell."""
 
     design: Design
-    net: Web
-    web: WebQuality
+    web: Web
+    quality: WebQuality
     network: CurveNetwork
     extent: ShellExtent
     gridshell: Gridshell

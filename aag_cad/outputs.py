@@ -138,15 +138,15 @@ def _write_overview(dossier: Dossier, folder: Path) -> None:
 def _write_web(dossier: Dossier, folder: Path) -> None:
     from aag_cad.files import write_bytes, write_text
 
-    write_text(folder / "web.obj", web_obj(dossier.model.net))
-    write_bytes(folder / "web.npz", web_npz(dossier.model.net))
+    write_text(folder / "web.obj", web_obj(dossier.model.web))
+    write_bytes(folder / "web.npz", web_npz(dossier.model.web))
 
 
 def _write_curves(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.cad.step_curves import write_step_curves
     from aag_cad.files import write_text
 
-    surface = interpolated_surface(dossier.model.net, dossier.model.design.step)
+    surface = interpolated_surface(dossier.model.web, dossier.model.design.step)
     write_step_curves(dossier.model.network, surface, folder / "curves.step")
     write_text(folder / "curves.json", polylines_json(dossier.model.network))
 

@@ -160,12 +160,11 @@ def model_of(design: Design, report: Report = lambda stage: None, given_curves: 
     """
     report("web")
     chart, web = worked_surface(design)
-    measures = quality(web)
     report("curves")
     network = given_curves or shell_network(design, chart)
     extent = shell_extent(design, chart, network)
     report("parts")
-    return Model(design, web, measures, network, extent, gridshell_from(design, network))
+    return Model(design, web, quality(web), network, extent, gridshell_from(design, network))
 
 
 def gridshell_of(design: Design) -> Gridshell:
