@@ -5,6 +5,7 @@ from OCP.GProp import GProp_GProps
 from OCP.TopoDS import TopoDS_Shape, TopoDS_Solid
 
 from aag_cad.parts.model import FlatBar
+from aag_cad.parts.shapes.box import Box
 from aag_cad.solids import brep
 from aag_cad.solids.planks import drilled_box
 
@@ -18,5 +19,6 @@ def signed_volume(shape: TopoDS_Shape, error: float = 1e-6) -> float:
 
 def straight_blank(plank: FlatBar) -> TopoDS_Solid:
     """Return the straight drilled blank in blank coordinates (x along it from its start)."""
-    blank = plank.blank
-    return brep.checked(drilled_box(0.0, blank.length, blank.section, blank.holes, plank.mark), plank.mark)
+    blank, half = plank.blank, plank.blank.section.thickness / 2.0
+    box = Box(blank.length, blank.section.width, -half, half, blank.holes)
+    return brep.checked(drilled_box(box, 0.0, plank.mark), plank.mark)

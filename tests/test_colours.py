@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from aag_cad.colours import LEGEND, lightness, linear, mixed, srgb
-from aag_cad.export.ifc.kinds import colour_name
 from aag_cad.families import BEAMS, EDGES, FAMILIES, GEODESICS, LAYERS
 from aag_cad.language import LANGUAGES
 from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import colour_name
 from aag_cad.parts.model import Gridshell, all_joints, all_parts
 from assembly.base.names import family_name
 from assembly.pictures.step_pictures import NEW, PIECES, STEEL, THERE

@@ -2,9 +2,9 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from aag_cad.parts.clearance import Obstacle, near_parts, obstacles
 from aag_cad.parts.facade import covered, placed_facade
 from aag_cad.parts.feet import foot_joints
 from aag_cad.parts.joints import BuiltJoint, block_joint, node_joint
+from aag_cad.parts.kinds import KINDS, kind_of
 from aag_cad.parts.marks import Mark, turned_mark
 from aag_cad.parts.members import (
     Drilling,
@@ -34,19 +35,12 @@ from aag_cad.parts.model import (
     Beam,
     Blade,
     Bolt,
-    CouplingBlock,
-    Footing,
     Frame,
     Gridshell,
     Joint,
     Part,
     Plank,
-    Rod,
-    Screw,
     Shell,
-    Shoe,
-    Strap,
-    Stud,
     Timber,
 )
 from aag_cad.parts.straps import strap_joint
@@ -150,8 +144,10 @@ def _with_holes(
     return jointed_beams, finished
 
 
-def _of(kind: type[_T], parts: Iterable[object]) -> tuple[_T, ...]:
-    return tuple(part for part in parts if isinstance(part, kind))
+def _by_field(parts: Sequence[Part]) -> dict[str, Any]:
+    """Return parts by the field of a shell that holds their kind."""
+    names = {row.field for row in KINDS.values() if row.place in ("shell", "ground")}
+    return {name: tuple(part for part in parts if kind_of(part).field == name) for name in names}
 
 
 def _blades(design: Design, network: CurveNetwork, parts: list[Part]) -> list[BladeJoint]:
@@ -184,17 +180,9 @@ def _shell(design: Design, network: CurveNetwork) -> tuple[Shell, list[BladeJoin
     shell = Shell(
         mark="S1",
         placement=UNMOVED,
-        planks=tuple(planks),
         beams=tuple(beams),
-        studs=_of(Stud, parts),
-        blocks=_of(CouplingBlock, parts),
-        bolts=_of(Bolt, parts),
-        screws=_of(Screw, parts),
         joints=tuple(b.joint for b in built),
-        straps=_of(Strap, parts),
-        shoes=_of(Shoe, parts),
-        rods=_of(Rod, parts),
-        footings=_of(Footing, parts),
+        **_by_field([*planks, *parts]),
     )
     return covered(shell, placed_facade(design, network, shell)), blades
 

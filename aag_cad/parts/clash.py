@@ -7,22 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from aag_cad.parts.depth import depths_in, surface_points
-from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import (
-    UNMOVED,
-    ClampingBar,
-    Frame,
-    Gridshell,
-    Mullion,
-    Part,
-    Plank,
-    Strip,
-    all_joints,
-    ridge_parts,
-    shell_parts,
-)
-from aag_cad.parts.products import part_frame, product_key
+from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import shaped
+from aag_cad.parts.mesh import depths_in, frame_matrix, surface_points
+from aag_cad.parts.model import UNMOVED, Frame, Gridshell, Part, all_joints, ridge_parts, shell_parts
+from aag_cad.parts.products import part_frame
 from aag_cad.units import Floats, Vector, vector
 
 _STRETCH = 250.0
@@ -58,11 +47,11 @@ class _Body:
     matrix: Floats
 
 
-def _body(part: Part, shell: int, placement: Frame) -> _Body:
+def _body(part: Part, key: str, shell: int, placement: Frame) -> _Body:
     matrix = frame_matrix(placement)
     if (frame := part_frame(part)) is not None:
         matrix = matrix @ frame_matrix(frame)
-    return _Body(part, product_key(part), shell, matrix)
+    return _Body(part, key, shell, matrix)
 
 
 def _pieces(index: int, body: _Body, groups: list[Floats]) -> Iterator[_Piece]:
@@ -74,10 +63,10 @@ def _pieces(index: int, body: _Body, groups: list[Floats]) -> Iterator[_Piece]:
 
 def _point_groups(part: Part) -> list[Floats]:
     """Return a part's surface points, those of a long part in stretches of about 250 mm so that boxes stay tight."""
-    points = surface_points(part)
-    if not isinstance(part, Plank | Mullion | ClampingBar | Strip):
+    points, (shape, form) = surface_points(part), shaped(part)
+    if not (lines := shape.lines(form)):
         return [points]
-    curve = part.left if isinstance(part, Strip) else part.curve
+    curve = lines[0]
     order = np.argsort(points @ (curve.points[-1] - curve.points[0]), kind="stable")
     return np.array_split(points[order], max(1, round(curve.length / _STRETCH)))
 
@@ -122,9 +111,10 @@ def clashes(gridshell: Gridshell, limit: float) -> list[Clash]:
     other part's own coordinates, where their depth is exact. A bolt or screw belongs into the members of its own joint
     and is not held against them.
     """
-    shells = gridshell.shells
-    bodies = [_body(part, i, shell.placement) for i, shell in enumerate(shells) for part in shell_parts(shell)]
-    bodies += [_body(part, _BETWEEN, UNMOVED) for part in ridge_parts(gridshell)]
+    shells, keys = gridshell.shells, index_of(gridshell).keys
+    wholes = [(i, shell.placement, shell_parts(shell)) for i, shell in enumerate(shells)]
+    wholes.append((_BETWEEN, UNMOVED, ridge_parts(gridshell)))
+    bodies = [_body(part, keys[part.mark], i, placement) for i, placement, parts in wholes for part in parts]
     own, repeated = _own_pairs(gridshell), _repeated(bodies, len(shells))
     samples = {body.key: _point_groups(body.part) for body in {body.key: body for body in bodies}.values()}
     pieces = [piece for index, body in enumerate(bodies) for piece in _pieces(index, body, samples[body.key])]

@@ -37,7 +37,7 @@ from aag_cad.parts.model import (
     Shell,
     Strip,
 )
-from aag_cad.parts.strips import Limit, Sheet, along_cut, depth_inside, sheet_of
+from aag_cad.parts.shapes.sheet import Limit, Sheet, along_cut, depth_inside, sheet_of
 from aag_cad.units import MM_PER_M, Floats, vector
 
 # Four samples past the end of a curve its spline is off by about 0.02 mm, and slanting cuts leave little sheet there.

@@ -1,7 +1,6 @@
 """Bolts and screws of standard sizes, placed by their axes."""
 
 import tomllib
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -76,41 +75,3 @@ def threaded_rod(mark: str, diameter: float, length: float, nuts: tuple[float, f
 def wood_screw(mark: str, diameter: float, length: float, frame: Frame) -> Screw:
     """Return a countersunk wood screw; its head is twice as wide as its shank."""
     return Screw(mark, frame, diameter, length, _SCREW_HEAD * diameter)
-
-
-@dataclass(frozen=True)
-class BoltPiece:
-    """A stretch of a bolt between two heights: a hexagon (size across flats) or a cylinder (size = diameter)."""
-
-    hexagonal: bool
-    size: float
-    low: float
-    high: float
-
-
-def bolt_pieces(bolt: Bolt) -> tuple[BoltPiece, ...]:
-    """Return head, washer, shank, washer, nut and tip of a bolt; z = 0 is the face of the first plank."""
-    t, nut = bolt.washer_thickness, bolt.grip + bolt.washer_thickness
-    pieces = (
-        BoltPiece(True, bolt.across_flats, -t - bolt.head_height, -t),
-        BoltPiece(False, bolt.washer_diameter, -t, 0.0),
-        BoltPiece(False, bolt.diameter, 0.0, bolt.grip),
-        BoltPiece(False, bolt.washer_diameter, bolt.grip, nut),
-        BoltPiece(True, bolt.across_flats, nut, nut + bolt.nut_height),
-        BoltPiece(False, bolt.diameter, nut + bolt.nut_height, bolt.length - t),
-    )
-    return tuple(piece for piece in pieces if piece.high > piece.low)
-
-
-def rod_pieces(rod: Rod) -> tuple[BoltPiece, ...]:
-    """Return shank, nuts and washers of a threaded rod from its lower end upwards."""
-    (low, high), t, m, d = rod.nuts, rod.washer_thickness, rod.nut_height, rod.diameter
-    return (
-        BoltPiece(False, d, 0.0, low - t - m),
-        BoltPiece(True, rod.across_flats, low - t - m, low - t),
-        BoltPiece(False, rod.washer_diameter, low - t, low),
-        BoltPiece(False, d, low, high),
-        BoltPiece(False, rod.washer_diameter, high, high + t),
-        BoltPiece(True, rod.across_flats, high + t, high + t + m),
-        BoltPiece(False, d, high + t + m, rod.length),
-    )

@@ -24,6 +24,7 @@ from aag_cad.parts.model import (
     all_parts,
     shell_parts,
 )
+from aag_cad.parts.products import product_key
 
 
 class _Marked(Protocol):
@@ -59,6 +60,11 @@ class Index:
     def parts(self) -> dict[str, Part]:
         """Every part."""
         return _by_mark(self.listed_parts)
+
+    @cached_property
+    def keys(self) -> dict[str, str]:
+        """The key of the product of each part (``aag_cad.parts.products.product_key``)."""
+        return {part.mark: product_key(part) for part in self.listed_parts}
 
     @cached_property
     def planks(self) -> dict[str, Plank]:

@@ -13,17 +13,35 @@ from functools import cache
 
 from aag_cad.errors import MarkError
 from aag_cad.families import BEAMS, FAMILIES
+from aag_cad.parts.kinds import KINDS
 
-_WIDTH: dict[str, int] = dict.fromkeys((*FAMILIES, *"FRCPMD"), 2) | dict.fromkeys("NKV", 3)
-_PATTERN = re.compile(
-    rf"S(?P<shell>[1-9]\d?)(?:-(?P<family>{'|'.join(_WIDTH)})-"
-    r"(?P<index>\d{2,5})(?:-(?P<part>[LR]|[BWT][1-9]\d?))?)?"
-)
+# The joints of the cover, which are no parts.
+_COVER = {"V": 3}
 _BLADE = re.compile(r"R(?P<pair>[1-9][1-9])-(?P<index>\d{2,5})(?:-(?P<part>B[1-9]\d?))?")
-
-
 _OWNER = re.compile(r"(?:S(?P<shell>[1-9]\d?)(?=-|$)|R(?P<pair>[1-9][1-9])(?=-))")
-_FASTENER = re.compile(r"(?P<joint>.+)-(?P<letter>[BWT])[1-9]\d?")
+_ADDED = re.compile(r"(?P<joint>.+)-(?P<letter>[A-Z])[1-9]\d?")
+
+
+@dataclass(frozen=True, eq=False)
+class _Letters:
+    """The letters of all kinds: the digits of each family, the letters of fasteners, the pattern of a mark."""
+
+    digits: dict[str, int]
+    fasteners: str
+    pattern: re.Pattern[str]
+
+
+@cache
+def _letters_of(kinds: tuple[type, ...]) -> _Letters:
+    rows = [KINDS[kind] for kind in kinds if KINDS[kind].letter]
+    fasteners = "".join(row.letter for row in rows if row.role == "fastener")
+    digits = dict.fromkeys(FAMILIES, 2) | _COVER | {row.letter: row.digits for row in rows if row.role != "fastener"}
+    family = rf"(?P<family>{'|'.join(digits)})-(?P<index>\d{{2,5}})(?:-(?P<part>[LR]|[{fasteners}][1-9]\d?))?"
+    return _Letters(digits, fasteners, re.compile(rf"S(?P<shell>[1-9]\d?)(?:-{family})?"))
+
+
+def _letters() -> _Letters:
+    return _letters_of(tuple(KINDS))
 
 
 @dataclass(frozen=True, order=True)
@@ -40,8 +58,8 @@ class Mark:
 
     @property
     def letter(self) -> str:
-        """B for a bolt, W for a screw, T for a threaded rod, else the family."""
-        return self.part[0] if self.part[:1] in ("B", "W", "T") else self.family
+        """That of a fastener, such as B for a bolt, else the family."""
+        return self.part[0] if self.part and self.part[0] in _letters().fasteners else self.family
 
     def __str__(self) -> str:
         """Return the mark as it is printed everywhere."""
@@ -49,7 +67,7 @@ class Mark:
             return f"{self.family}-{self.index:02d}" + (f"-{self.part}" if self.part else "")
         text = f"S{self.shell}"
         if self.family:
-            text += f"-{self.family}-{self.index:0{_WIDTH[self.family]}d}"
+            text += f"-{self.family}-{self.index:0{_letters().digits[self.family]}d}"
         return text + (f"-{self.part}" if self.part else "")
 
 
@@ -58,7 +76,7 @@ def parse_mark(text: str) -> Mark:
     """Return the parsed mark; MarkError if the text is not one, or not printed as we print it."""
     if blade := _BLADE.fullmatch(text):
         mark = Mark(0, f"R{blade['pair']}", int(blade["index"]), blade["part"] or "")
-    elif found := _PATTERN.fullmatch(text):
+    elif found := _letters().pattern.fullmatch(text):
         mark = Mark(int(found["shell"]), found["family"] or "", int(found["index"] or 0), found["part"] or "")
     else:
         raise MarkError(
@@ -127,7 +145,7 @@ def short_mark(text: str) -> str:
 def number_of(text: str) -> str:
     """Return the number of a mark as it is printed in it: 031 of S1-N-031."""
     mark = parse_mark(text)
-    return f"{mark.index:0{_WIDTH.get(mark.family, 2)}d}"
+    return f"{mark.index:0{_letters().digits.get(mark.family, 2)}d}"
 
 
 def part_mark(whole: str | Mark, part: str) -> str:
@@ -152,5 +170,5 @@ def plank_of(text: str) -> str:
 
 def joint_of(text: str) -> str:
     """Return the mark of the joint that a bolt, screw or threaded rod belongs to, or "" for what is none."""
-    found = _FASTENER.fullmatch(text)
-    return found["joint"] if found else ""
+    found = _ADDED.fullmatch(text)
+    return found["joint"] if found and found["letter"] in _letters().fasteners else ""

@@ -6,10 +6,11 @@ blank, x along it from its start, y across its width and z through its thickness
 """
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal, Protocol, TypeAlias
 
 from aag_cad.families import Family
 from aag_cad.geometry.framed import FramedCurve
+from aag_cad.parts.shapes.folded_plate import FoldedPlate
 from aag_cad.units import Vector
 
 SCHEMA_VERSION = 2
@@ -28,6 +29,14 @@ class Frame:
 
 
 UNMOVED = Frame((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+class Part(Protocol):
+    """What is made and put in place under its own mark; ``aag_cad.parts.kinds`` describes every kind."""
+
+    @property
+    def mark(self) -> str:
+        """Its mark, which no other part has."""
 
 
 @dataclass(frozen=True)
@@ -242,28 +251,6 @@ class Strap:
 
 
 @dataclass(frozen=True)
-class PlateHole:
-    """A round hole through a folded plate: station along its line, offset across it, diameter, mm."""
-
-    station: float
-    offset: float
-    diameter: float
-
-
-@dataclass(frozen=True)
-class FoldedPlate:
-    """A steel plate folded along parallel lines: its centre line (x, z) in the plane y = 0 of its frame; width along y.
-
-    ``line`` is a polyline; a hole is square to the leg that it lies in.
-    """
-
-    line: tuple[tuple[float, float], ...]
-    width: float
-    thickness: float
-    holes: tuple[PlateHole, ...]
-
-
-@dataclass(frozen=True)
 class Shoe:
     """The steel shoe at the foot of a geodesic: an upright on geodesic and edge plank, a foot over the block.
 
@@ -318,7 +305,10 @@ class Joint:
 
 @dataclass(frozen=True)
 class Shell:
-    """One shell: where it stands in the vault, and all its parts in its own coordinates."""
+    """One shell: where it stands in the vault, and all its parts in its own coordinates.
+
+    ``more`` holds the parts of kinds that have no field here.
+    """
 
     mark: str
     placement: Frame
@@ -336,6 +326,7 @@ class Shell:
     mullions: tuple[Mullion, ...] = ()
     strips: tuple[Strip, ...] = ()
     clamps: tuple[ClampingBar, ...] = ()
+    more: tuple[Part, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -369,25 +360,23 @@ class Gridshell:
     blades: tuple[Blade, ...] = ()
     bolts: tuple[Bolt, ...] = ()
     joints: tuple[Joint, ...] = ()
+    more: tuple[Part, ...] = ()
 
 
 FlatBar: TypeAlias = Plank | Mullion | ClampingBar | Strap
-Part: TypeAlias = (
-    Plank | Stud | CouplingBlock | Bolt | Screw | Strap | Shoe | Rod | Footing | Mullion | Strip | ClampingBar | Blade
-)
 
 
 def shell_parts(shell: Shell) -> tuple[Part, ...]:
     """Return every part of a shell, in the order of its fields; beams are assemblies of planks and not parts."""
     return (
         *shell.planks, *shell.studs, *shell.blocks, *shell.bolts, *shell.screws, *shell.straps, *shell.shoes,
-        *shell.rods, *shell.footings, *shell.mullions, *shell.strips, *shell.clamps,
+        *shell.rods, *shell.footings, *shell.mullions, *shell.strips, *shell.clamps, *shell.more,
     )  # fmt: skip
 
 
 def ridge_parts(gridshell: Gridshell) -> tuple[Part, ...]:
-    """Return the parts between the shells, in vault coordinates: blades and their bolts."""
-    return (*gridshell.blades, *gridshell.bolts)
+    """Return the parts between the shells, in vault coordinates: blades, their bolts, and what else there is."""
+    return (*gridshell.blades, *gridshell.bolts, *gridshell.more)
 
 
 def all_parts(gridshell: Gridshell) -> tuple[Part, ...]:

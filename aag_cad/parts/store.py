@@ -10,18 +10,22 @@ import numpy as np
 
 from aag_cad.errors import FileError
 from aag_cad.geometry.framed import FramedCurve
-from aag_cad.parts.model import SCHEMA_VERSION, Gridshell
+from aag_cad.parts.kinds import KINDS, kind_of
+from aag_cad.parts.model import SCHEMA_VERSION, Gridshell, Part, Shell
 from aag_cad.units import Floats
 
 _hints = cache(get_type_hints)
 
 
 def _plain(value: Any) -> Any:
-    """Return lists, dicts, numbers and texts for a model value."""
+    """Return lists, dicts, numbers and texts for a model value; what is ``more`` in it names its kind."""
     if isinstance(value, FramedCurve):
         return {name: getattr(value, name).tolist() for name in ("stations", "points", "normals")}
     if is_dataclass(value):
-        return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
+        plain = {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
+        if isinstance(value, Shell | Gridshell) and (more := plain.pop("more")):
+            plain["more"] = [{"kind": kind_of(part).name, **each} for part, each in zip(value.more, more, strict=True)]
+        return plain
     if isinstance(value, tuple):
         return [_plain(item) for item in value]
     return value
@@ -52,6 +56,15 @@ def _curve(data: Any, path: str) -> FramedCurve:
     return FramedCurve(**arrays)
 
 
+def _part(data: Any, path: str) -> Any:
+    """Return a part that names its kind."""
+    name = data.get("kind") if isinstance(data, dict) else None
+    kind = next((row.part for row in KINDS.values() if row.name == name), None)
+    if kind is None:
+        raise FileError(f"{path}: kind {name!r} is none of {', '.join(row.name for row in KINDS.values())}")
+    return value_of(kind, {key: data[key] for key in data if key != "kind"}, path)
+
+
 def value_of(kind: Any, data: Any, path: str) -> Any:
     """Return the value of a type from plain data, as JSON gives it; FileError with the path of what does not fit.
 
@@ -59,6 +72,8 @@ def value_of(kind: Any, data: Any, path: str) -> Any:
     """
     if kind is FramedCurve:
         return _curve(data, path)
+    if kind is Part:
+        return _part(data, path)
     if is_dataclass(kind) and isinstance(kind, type):
         if not isinstance(data, dict):
             raise FileError(f"{path}: expected an object, found {type(data).__name__}")

@@ -1,4 +1,4 @@
-"""Closed triangle meshes: sweeps, prisms and polygons; faces turn outwards."""
+"""Closed triangle meshes: sweeps, prisms and polygons; faces turn outwards. Areas of circles and hexagons."""
 
 import math
 from dataclasses import dataclass
@@ -67,3 +67,13 @@ def round_polygon(diameter: float) -> Floats:
     """Return a polygon of twelve sides with the area of the circle."""
     area = math.pi * diameter**2 / 4.0
     return regular_polygon(_ROUND_SIDES, 2.0 * math.sqrt(area / (_ROUND_SIDES * math.tan(math.pi / _ROUND_SIDES))))
+
+
+def hexagon_area(across_flats: float) -> float:
+    """Return the area of a regular hexagon, mm2."""
+    return math.sqrt(3.0) / 2.0 * across_flats**2
+
+
+def circle_area(diameter: float) -> float:
+    """Return the area of a circle, mm2."""
+    return math.pi / 4.0 * diameter**2

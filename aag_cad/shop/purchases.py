@@ -2,46 +2,24 @@
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from aag_cad.design import Design
 from aag_cad.findings import Finding
-from aag_cad.parts.model import (
-    Blade,
-    Bolt,
-    ClampingBar,
-    CouplingBlock,
-    Footing,
-    Gridshell,
-    JointKind,
-    Mullion,
-    Part,
-    Plank,
-    Rod,
-    Screw,
-    Shoe,
-    Strap,
-    Strip,
-    Stud,
-    all_joints,
-    all_parts,
-)
-from aag_cad.parts.quantities import (
-    STEEL_DENSITY,
-    circle_area,
-    density,
-    hexagon_area,
-    kind,
-    mass,
-    material_name,
-    sizes,
-    volume,
-)
-from aag_cad.parts.strips import flat_pattern
+from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import kind_of, shaped
+from aag_cad.parts.model import Gridshell, JointKind, Part, Plank, Strip, all_parts
+from aag_cad.parts.quantities import STEEL_DENSITY, density, mass, material_name, sizes, volume
+from aag_cad.parts.shapes.folded_plate import FOLDED_PLATE
+from aag_cad.parts.shapes.prism import PRISM
+from aag_cad.parts.shapes.sheet import flat_pattern
+from aag_cad.parts.shapes.threaded import BoltPiece
+from aag_cad.parts.triangles import circle_area
 from aag_cad.shop.finger_joints import FingerJoint, board_rules, plank_pieces
+from aag_cad.shop.groups import all_planks
 from aag_cad.shop.offcuts import Reused, fitting_planks, read_offcuts, reused_planks
 from aag_cad.shop.sheets import SheetPlan, SheetRules, sheet_plan
 from aag_cad.shop.stock import CuttingPlan, Piece, StockRules, cutting_plan
@@ -109,26 +87,17 @@ class Purchases:
     lines: tuple[Purchase, ...]
 
 
-def _bar(part: Part) -> tuple[str, float, float, str] | None:
-    """Return (item, width, thickness, standard) of the bar that a part is cut from, or None if it is from no bar.
+def _section(part: Part) -> tuple[float, float]:
+    """Return width and thickness of the bar that a part is cut from.
 
     A hexagonal stud is planed from a bar as thick as its flats are apart and as wide as its corners.
     """
-    match part:
-        case Stud():
-            return "timber bar", float(math.ceil(part.across_flats * 2.0 / math.sqrt(3.0))), part.across_flats, "EN 338"
-        case CouplingBlock():
-            return "timber bar", part.width, part.thickness, "EN 338"
-        case Mullion() | ClampingBar():
-            return "aluminium flat bar", part.blank.section.width, part.blank.section.thickness, "EN 755-5"
-        case Strap():
-            return "steel flat bar", part.blank.section.width, part.blank.section.thickness, "EN 10058"
-        case _:
-            return None
+    _length, width, thickness = sizes(part)
+    return float(math.ceil(width * 2.0 / math.sqrt(3.0))) if kind_of(part).shape is PRISM else width, thickness
 
 
 def _plural(parts: Iterable[Part]) -> str:
-    return ", ".join(f"{name}s" for name in sorted({kind(part) for part in parts}))
+    return ", ".join(f"{name}s" for name in sorted({kind_of(part).name for part in parts}))
 
 
 def _bars(gridshell: Gridshell, design: Design) -> tuple[list[CutStock], list[Finding]]:
@@ -136,8 +105,8 @@ def _bars(gridshell: Gridshell, design: Design) -> tuple[list[CutStock], list[Fi
     stock = design.stock
     groups: dict[tuple[str, float, float, str], list[Part]] = defaultdict(list)
     for part in all_parts(gridshell):
-        if bar := _bar(part):
-            groups[bar].append(part)
+        if (bought := kind_of(part).bought).source == "bar":
+            groups[bought.item, *_section(part), bought.standard].append(part)
     bars, refused = [], []
     for (item, width, thickness, standard), parts in sorted(groups.items()):
         key = "bar_lengths" if item == "timber bar" else "metal_lengths"
@@ -159,18 +128,18 @@ def _bars(gridshell: Gridshell, design: Design) -> tuple[list[CutStock], list[Fi
 
 
 def _boards(
-    planks: list[Plank], gridshell: Gridshell, design: Design
+    planks: Sequence[Plank], gridshell: Gridshell, design: Design
 ) -> tuple[CutStock, tuple[FingerJoint, ...], tuple[Finding, ...]]:
     """Return the boards for new planks with their cuts, their finger joints, and the planks that no board gives."""
-    stock, timber = design.stock, design.timber
+    stock, timber, bought = design.stock, design.timber, kind_of(gridshell.shells[0].planks[0]).bought
     pieces, joints, refused = plank_pieces(planks, stock)
     made = {piece.mark for piece in pieces}
     thick = stock.planks_per_board * timber.thickness + (stock.planks_per_board - 1) * stock.split_kerf
     board = CutStock(
-        item=f"{gridshell.timber.species} {gridshell.timber.strength_class} board",
+        item=f"{gridshell.timber.species} {gridshell.timber.strength_class} {bought.item}",
         width=timber.width,
         thickness=stock.board_thickness or thick,
-        standard="EN 338",
+        standard=bought.standard,
         density=gridshell.timber.density,
         use="planks",
         plan=cutting_plan(pieces, board_rules(stock)),
@@ -192,48 +161,34 @@ def _cut_lines(cut: CutStock) -> list[Purchase]:
     return lines
 
 
-def _fasteners(part: Part) -> list[tuple[str, str, str, int, float]]:
-    """Return (item, size, standard, quantity, volume of one in mm3) of what is bought for a fastener."""
-    match part:
-        case Bolt() | Rod():
-            thread, shank = f"M{part.diameter:g}", circle_area(part.diameter)
-            nut = (hexagon_area(part.across_flats) - shank) * part.nut_height
-            washer = (circle_area(part.washer_diameter) - shank) * part.washer_thickness
-            bolt = shank * part.length
-            if isinstance(part, Bolt):
-                bolt += hexagon_area(part.across_flats) * part.head_height
-                first = ("hexagon bolt", f"{thread} x {part.length:g}", "ISO 4014", 1, bolt)
-            else:
-                first = ("threaded rod", f"{thread} x {math.ceil(part.length)}", "DIN 976-1", 1, bolt)
-            nuts, washers = (1, "ISO 7093-1") if isinstance(part, Bolt) else (2, "ISO 7089")
-            return [
-                first,
-                ("hexagon nut", thread, "ISO 4032", nuts, nut),
-                ("washer", thread, washers, 2, washer),
-            ]
-        case Screw():
-            size = f"{part.diameter:g} x {part.length:g}"
-            return [("countersunk wood screw", size, "DIN 7997", 1, volume(part))]
-        case _:
-            return []
+def _in_boxes(part: Part) -> Iterator[tuple[tuple[str, str, str], int, float]]:
+    """Yield ((item, size, standard), quantity, volume of all in mm3) of what is bought for a fastener."""
+    bought, (_shape, form) = kind_of(part).bought, shaped(part)
+    shank, thread = circle_area(form.diameter), f"M{form.diameter:g}"
+    named: dict[str, list[BoltPiece]] = defaultdict(list)
+    for piece in form.pieces:
+        named[piece.name].append(piece)
+    size = f"{thread if named['nut'] else f'{form.diameter:g}'} x {form.length:g}"
+    yield (bought.item, size, bought.standard), 1, shank * form.length + sum(head.volume for head in named["head"])
+    for name, item, standard in (("nut", "hexagon nut", "ISO 4032"), ("washer", "washer", bought.washers)):
+        if around := named[name]:
+            yield (item, thread, standard), len(around), sum(p.volume - shank * (p.high - p.low) for p in around)
 
 
 def _fastener_lines(gridshell: Gridshell) -> list[Purchase]:
-    use_of = {mark: _USES[joint.kind] for joint in all_joints(gridshell) for mark in joint.fasteners}
+    joints = index_of(gridshell).joint_of_fastener
     counts: Counter[tuple[str, str, str]] = Counter()
     volumes: dict[tuple[str, str, str], list[float]] = defaultdict(list)
     uses: dict[tuple[str, str, str], set[str]] = defaultdict(set)
-    for part in all_parts(gridshell):
-        for item, size, standard, quantity, one in _fasteners(part):
-            key = (item, size, standard)
+    for part in (part for part in all_parts(gridshell) if kind_of(part).bought.source == "box"):
+        for key, quantity, cubic in _in_boxes(part):
             counts[key] += quantity
-            volumes[key].append(quantity * one)
-            uses[key].add(use_of.get(part.mark, ""))
+            volumes[key].append(cubic)
+            uses[key] |= {_USES[joints[part.mark].kind]} if part.mark in joints else set()
     return [
-        Purchase(item, size, standard, counts[item, size, standard], "pcs", 0.0, 0.0,
-                 math.fsum(volumes[item, size, standard]) * STEEL_DENSITY / MM3_PER_M3,
-                 ", ".join(sorted(use for use in uses[item, size, standard] if use)))
-        for item, size, standard in sorted(counts)
+        Purchase(*key, counts[key], "pcs", 0.0, 0.0, math.fsum(volumes[key]) * STEEL_DENSITY / MM3_PER_M3,
+                 ", ".join(sorted(uses[key])))
+        for key in sorted(counts)
     ]  # fmt: skip
 
 
@@ -241,29 +196,28 @@ def _ready_made_lines(gridshell: Gridshell) -> list[Purchase]:
     """Return what is ordered by the piece: folded steel plates by their flat size, concrete blocks."""
     groups: dict[tuple[str, str, str], list[Part]] = defaultdict(list)
     for part in all_parts(gridshell):
-        length, width, thickness = sizes(part) if isinstance(part, Shoe | Blade | Footing) else (0.0, 0.0, 0.0)
-        if isinstance(part, Footing):
-            groups["precast concrete block", f"{length:g} x {width:g} x {thickness:g}", "EN 13369"].append(part)
-        elif isinstance(part, Shoe | Blade):
-            item = f"steel plate, folded to a {kind(part)}"
-            groups[item, f"{thickness:g} x {width:g} x {length:.0f}", "EN 10025-2"].append(part)
+        row, (length, width, thickness) = kind_of(part), sizes(part)
+        if row.bought.source == "piece":
+            flat = row.shape is FOLDED_PLATE
+            size = f"{thickness:g} x {width:g} x {length:.0f}" if flat else f"{length:g} x {width:g} x {thickness:g}"
+            groups[row.bought.item, size, row.bought.standard].append(part)
     lines = []
     for (item, size, standard), parts in sorted(groups.items()):
         cubic = math.fsum(volume(part) for part in parts) / MM3_PER_M3
         weight = math.fsum(mass(part, gridshell.timber) for part in parts)
-        use = "footings" if isinstance(parts[0], Footing) else _plural(parts)
+        use = f"{kind_of(parts[0]).key}s"
         lines.append(Purchase(item, size, standard, len(parts), "pcs", 0.0, cubic, weight, use))
     return lines
 
 
-def _sheet_lines(plan: SheetPlan, item: str, thickness: float, strip_density: float) -> list[Purchase]:
-    lines = []
+def _sheet_lines(plan: SheetPlan, strip: Strip) -> list[Purchase]:
+    lines, bought = [], kind_of(strip).bought
     for length, count in sorted(Counter(sheet.length for sheet in plan.sheets).items()):
-        cubic = count * length * plan.width * thickness / MM3_PER_M3
-        size = f"{thickness:g} x {plan.width:g} x {length:g}"
+        cubic = count * length * plan.width * strip.thickness / MM3_PER_M3
+        size = f"{strip.thickness:g} x {plan.width:g} x {length:g}"
         lines.append(
-            Purchase(item, size, "EN 16153", count, "pcs", count * length / MM_PER_M, cubic, cubic * strip_density,
-                     "strips")
+            Purchase(bought.item, size, bought.standard, count, "pcs", count * length / MM_PER_M, cubic,
+                     cubic * strip.density, _plural([strip]))
         )  # fmt: skip
     return lines
 
@@ -275,9 +229,8 @@ def purchases_of(gridshell: Gridshell, design: Design) -> Purchases:
     FileError if the table of old planks cannot be read.
     """
     stock = design.stock
-    parts = all_parts(gridshell)
-    planks = [part for part in parts if isinstance(part, Plank)]
-    strips = [part for part in parts if isinstance(part, Strip)]
+    planks = all_planks(gridshell)
+    strips = [strip for shell in gridshell.shells for strip in shell.strips]
     old, refused_old = fitting_planks(read_offcuts(Path(stock.offcuts)) if stock.offcuts else (), design.timber)
     reused = reused_planks(planks, old, stock) if old else ()
     done = {item.mark for item in reused}
@@ -285,10 +238,9 @@ def purchases_of(gridshell: Gridshell, design: Design) -> Purchases:
     bars, too_long_bars = _bars(gridshell, design)
     outlines = [(strip.mark, flat_pattern(strip).outline) for strip in strips]
     sheets = sheet_plan(outlines, SheetRules(design.facade.sheet_width, design.facade.sheet_lengths, stock.sheet_gap))
-    sheet = "multiwall polycarbonate sheet"
     lines = [line for cut in (board, *bars) for line in _cut_lines(cut)]
     if strips:
-        lines += _sheet_lines(sheets, sheet, strips[0].thickness, density(strips[0], gridshell.timber))
+        lines += _sheet_lines(sheets, strips[0])
     if reused:
         section = f"{design.timber.thickness:g} x {design.timber.width:g}"
         metres = math.fsum(item.length for item in reused) / MM_PER_M
@@ -298,6 +250,7 @@ def purchases_of(gridshell: Gridshell, design: Design) -> Purchases:
                               "planks"))  # fmt: skip
     lines += _fastener_lines(gridshell) + _ready_made_lines(gridshell)
     refused = (*refused_old, *too_long, *too_long_bars, *sheets.refused)
+    sheet = kind_of(strips[0]).bought.item if strips else ""
     return Purchases((board, *bars), sheets, sheet, reused, joints, refused, tuple(lines))
 
 

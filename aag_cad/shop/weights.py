@@ -3,8 +3,9 @@
 from collections import Counter
 from dataclasses import dataclass
 
-from aag_cad.parts.model import Footing, Gridshell, Part, ridge_parts, shell_parts
-from aag_cad.parts.quantities import Material, kind, mass, material
+from aag_cad.parts.kinds import Material, kind_of
+from aag_cad.parts.model import Gridshell, ridge_parts, shell_parts
+from aag_cad.parts.quantities import mass
 
 # kg a shell: "approx. 300 kg for timber, 30 kg for steel screws and plates, and 40 kg for facade panels and aluminum
 # profiles", 1100 kg for 100 m2 of roof.
@@ -31,10 +32,6 @@ class Weight:
         return f"{listed}; {self.kg - self.paper_kg:+.0f} kg against the paper's {self.paper_kg:.0f} kg"
 
 
-def _plural(part: Part) -> str:
-    return f"{kind(part)}s"
-
-
 def shell_weights(gridshell: Gridshell) -> tuple[Weight, ...]:
     """Return the weights of one shell by group: timber, steel and facade; the concrete blocks are left out.
 
@@ -45,8 +42,9 @@ def shell_weights(gridshell: Gridshell) -> tuple[Weight, ...]:
     weighed = [(part, 1.0) for part in shell_parts(gridshell.shells[0])]
     weighed += [(part, share) for part in ridge_parts(gridshell)]
     for part, amount in weighed:
-        if not isinstance(part, Footing):
-            totals[_GROUPS[material(part)]][_plural(part)] += amount * mass(part, gridshell.timber)  # type: ignore[assignment]
+        row = kind_of(part)
+        if row.material in _GROUPS:
+            totals[_GROUPS[row.material]][f"{row.name}s"] += amount * mass(part, gridshell.timber)  # type: ignore[assignment]
     return tuple(
         Weight(group, float(sum(parts.values())), PAPER_SHELL[group], tuple(parts.most_common()))
         for group, parts in totals.items()

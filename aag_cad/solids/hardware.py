@@ -1,4 +1,4 @@
-"""Solids of studs, fasteners, coupling blocks, footings and folded plates in the coordinates of their frames."""
+"""Solids of prisms, threaded fasteners, boxes and folded plates in the coordinates of their frames."""
 
 import math
 
@@ -8,9 +8,10 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakePrism, BRe
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Vec
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Solid
 
-from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
-from aag_cad.parts.model import Bolt, CouplingBlock, CrossSection, FoldedPlate, Footing, Rod, Screw, Stud
-from aag_cad.parts.plates import hole_axes, plate_rings
+from aag_cad.parts.model import Stud
+from aag_cad.parts.shapes.box import Box
+from aag_cad.parts.shapes.folded_plate import FoldedPlate, hole_axes, plate_rings
+from aag_cad.parts.shapes.threaded import Threaded
 from aag_cad.parts.triangles import regular_polygon
 from aag_cad.solids.brep import the_solid
 from aag_cad.solids.planks import drilled_box
@@ -18,7 +19,7 @@ from aag_cad.solids.planks import drilled_box
 _UP = gp_Dir(0.0, 0.0, 1.0)
 
 
-def stud_solid(stud: Stud) -> TopoDS_Solid:
+def prism_solid(stud: Stud, mark: str) -> TopoDS_Solid:
     """Return the hexagonal stud with its cross holes, centred on its frame; SolidError if a hole splits it."""
     shape = _hexagon(stud.across_flats, -stud.length / 2.0, stud.length / 2.0)
     for hole in stud.holes:
@@ -27,55 +28,39 @@ def stud_solid(stud: Stud) -> TopoDS_Solid:
         start = gp_Pnt(-reach * along.X(), -reach * along.Y(), hole.height)
         drill = BRepPrimAPI_MakeCylinder(gp_Ax2(start, along), hole.diameter / 2.0, 2.0 * reach).Shape()
         shape = BRepAlgoAPI_Cut(shape, drill).Shape()
-    return the_solid(shape, stud.mark)
+    return the_solid(shape, mark)
 
 
-def bolt_solid(bolt: Bolt) -> TopoDS_Solid:
-    """Return head, washers, shank and nut of a bolt as one solid; z = 0 is the outer face of the first plank."""
-    return the_solid(_threaded(bolt_pieces(bolt), bolt.diameter), bolt.mark)
+def threaded_solid(form: Threaded, mark: str) -> TopoDS_Solid:
+    """Return the pieces of a fastener as one solid: the round ones turned in one go, then the hexagons.
 
-
-def rod_solid(rod: Rod) -> TopoDS_Solid:
-    """Return a threaded rod with its nuts and washers as one solid; z = 0 is its lower end."""
-    return the_solid(_threaded(rod_pieces(rod), rod.diameter), rod.mark)
-
-
-def _threaded(pieces: tuple[BoltPiece, ...], diameter: float) -> TopoDS_Shape:
-    """Return the pieces of a bolt as one shape: the round ones turned in one go, then the hexagons."""
-    profile = [(0.0, pieces[0].low)]
-    for piece in pieces:
-        radius = (diameter if piece.hexagonal else piece.size) / 2.0
-        if radius != profile[-1][0]:
+    A head is countersunk at 90 degrees. SolidError with the mark if the solid comes out invalid.
+    """
+    profile = [(0.0, form.pieces[0].low)]
+    for piece in form.pieces:
+        radius = (form.diameter if piece.hexagonal else piece.size) / 2.0
+        if piece.countersunk:
+            head = piece.countersunk / 2.0
+            profile += [(head, piece.low), (radius, piece.low + head - radius)]
+        elif radius != profile[-1][0]:
             profile.append((radius, piece.low))
         else:
             profile.pop()
         profile.append((radius, piece.high))
-    shape = _turned([*profile, (0.0, pieces[-1].high)])
-    for piece in pieces:
+    shape = _turned([*profile, (0.0, form.pieces[-1].high)])
+    for piece in form.pieces:
         if piece.hexagonal:
             shape = BRepAlgoAPI_Fuse(shape, _hexagon(piece.size, piece.low, piece.high)).Shape()
-    return shape
+    return the_solid(shape, mark)
 
 
-def screw_solid(screw: Screw) -> TopoDS_Solid:
-    """Return a screw with a head countersunk at 90 degrees, flush at z = 0, and a plain shank."""
-    head, r = screw.head_diameter / 2.0, screw.diameter / 2.0
-    return the_solid(
-        _turned([(0.0, 0.0), (head, 0.0), (r, head - r), (r, screw.length), (0.0, screw.length)]), screw.mark
-    )
-
-
-def block_solid(block: CouplingBlock) -> TopoDS_Solid:
-    """Return the coupling block, centred on its frame, with its holes along z; SolidError if one breaks out."""
-    half, section = block.length / 2.0, CrossSection(block.width, block.thickness)
-    return the_solid(drilled_box(-half, half, section, block.holes, block.mark), block.mark)
-
-
-def footing_solid(footing: Footing) -> TopoDS_Solid:
-    """Return the concrete block; z = 0 is its top."""
-    x, y = footing.length / 2.0, footing.width / 2.0
-    base = _outline([gp_Pnt(*corner, -footing.height) for corner in ((-x, -y), (x, -y), (x, y), (-x, y))])
-    return the_solid(BRepPrimAPI_MakePrism(base, gp_Vec(0.0, 0.0, footing.height)).Shape(), footing.mark)
+def box_solid(box: Box, mark: str) -> TopoDS_Solid:
+    """Return a box with its holes along z; SolidError with the mark if one breaks out."""
+    if box.holes or box.low == -box.high:
+        return the_solid(drilled_box(box, -box.length / 2.0, mark), mark)
+    x, y = box.length / 2.0, box.width / 2.0
+    base = _outline([gp_Pnt(*corner, box.low) for corner in ((-x, -y), (x, -y), (x, y), (-x, y))])
+    return the_solid(BRepPrimAPI_MakePrism(base, gp_Vec(0.0, 0.0, box.thickness)).Shape(), mark)
 
 
 def folded_plate_solid(plate: FoldedPlate, mark: str) -> TopoDS_Solid:

@@ -7,7 +7,8 @@ from scipy.interpolate import BSpline
 
 from aag_cad.errors import SolidError
 from aag_cad.parts.forming import CORNER_DEGREE, corner_splines, plank_axes
-from aag_cad.parts.model import CrossSection, FlatBar, Hole
+from aag_cad.parts.model import FlatBar
+from aag_cad.parts.shapes.box import Box
 from aag_cad.solids import brep
 from aag_cad.solids.board import Bore, Skin, drilled_board
 from aag_cad.solids.bores import formed_bores, require_inside
@@ -32,13 +33,13 @@ def formed_plank(plank: FlatBar) -> TopoDS_Solid:
     return brep.checked(drilled_board(_formed_skin(plank, spline, corners), ends, bores), plank.mark)
 
 
-def drilled_box(start: float, end: float, section: CrossSection, holes: tuple[Hole, ...], mark: str) -> TopoDS_Solid:
-    """Return the box along x, centred on it, with holes along z; SolidError names the mark if a hole breaks out."""
-    y, z = section.width / 2.0, section.thickness / 2.0
-    for hole in holes:
+def drilled_box(box: Box, start: float, mark: str) -> TopoDS_Solid:
+    """Return a box along x from ``start`` with its holes; SolidError names the mark if a hole breaks out."""
+    y, end = box.width / 2.0, start + box.length
+    for hole in box.holes:
         r = hole.diameter / 2.0
         require_inside(mark, hole, hole.station - r > start and hole.station + r < end and abs(hole.offset) + r < y)
-    ring = _section_corners(section)
+    ring = np.array([(-y, box.low), (y, box.low), (y, box.high), (-y, box.high)])
     corners = np.array([np.column_stack([np.full(4, x), ring]) for x in (start, end)])
     x_axis, y_axis, z_axis = np.eye(3)
     outward = (-z_axis, y_axis, z_axis, -y_axis)
@@ -46,14 +47,15 @@ def drilled_box(start: float, end: float, section: CrossSection, holes: tuple[Ho
         corners=corners,
         curves=[Geom_Line(brep.point(corner), brep.direction(x_axis)) for corner in corners[0]],
         surfaces=[brep.plane(corners[0, j], outward[j], x_axis) for j in range(4)],
-        length=end - start,
-        sides=_sides(section),
+        length=box.length,
+        sides=_sides(box.width, box.thickness),
         flat=True,
     )
     ends = brep.plane(start * x_axis, -x_axis, y_axis), brep.plane(end * x_axis, x_axis, y_axis)
+    through = box.low, box.high
     bores = [
-        Bore(np.array([h.station, h.offset, 0.0]), x_axis, z_axis, h.diameter / 2.0, (-z, z), None, brep.TIGHT)
-        for h in holes
+        Bore(np.array([h.station, h.offset, 0.0]), x_axis, z_axis, h.diameter / 2.0, through, None, brep.TIGHT)
+        for h in box.holes
     ]
     return drilled_board(skin, ends, bores)
 
@@ -66,17 +68,12 @@ def _require_square_ends(plank: FlatBar) -> None:
             )
 
 
-def _section_corners(section: CrossSection) -> Floats:
-    y, z = section.width / 2.0, section.thickness / 2.0
-    return np.array([(-y, -z), (y, -z), (y, z), (-y, z)])
-
-
-def _sides(section: CrossSection) -> tuple[float, float, float, float]:
-    return section.width, section.thickness, section.width, section.thickness
+def _sides(width: float, thickness: float) -> tuple[float, float, float, float]:
+    return width, thickness, width, thickness
 
 
 def _formed_skin(plank: FlatBar, spline: BSpline, corners: Floats) -> Skin:
-    sides, poles = _sides(plank.blank.section), spline.c
+    sides, poles = _sides(plank.blank.section.width, plank.blank.section.thickness), spline.c
     return Skin(
         corners=corners,
         curves=[brep.spline_curve(CORNER_DEGREE, spline.t, poles[:, j]) for j in range(4)],

@@ -12,7 +12,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Solid, TopoDS_Vertex
 from scipy.interpolate import BSpline, make_interp_spline
 
 from aag_cad.parts.model import Strip
-from aag_cad.parts.strips import Sheet, rulings_through, sheet_of
+from aag_cad.parts.shapes.sheet import Sheet, rulings_through, sheet_of
 from aag_cad.solids import brep
 from aag_cad.units import Floats
 

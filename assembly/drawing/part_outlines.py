@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.mesh import shell_mesh
 from aag_cad.parts.model import ClampingBar, FlatBar, Mullion, Part, Plank, Strap, Strip
-from aag_cad.parts.strips import ruling_spans, sheet_of
+from aag_cad.parts.shapes.sheet import ruling_spans, sheet_of
 from aag_cad.units import Floats
 
 Flat: TypeAlias = Callable[[Floats], Floats]

@@ -7,12 +7,12 @@ import numpy as np
 from aag_cad.colours import LEGEND
 from aag_cad.geometry.framed import frames_at
 from aag_cad.language import Language, figure, say
-from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Blade, Bolt, FlatBar, FoldedPlate, Frame, Gridshell, Joint, Plank, Shell, Shoe, Strap
-from aag_cad.parts.plates import plate_rings
+from aag_cad.parts.model import Blade, Bolt, FlatBar, Frame, Gridshell, Joint, Plank, Shell, Shoe, Strap
+from aag_cad.parts.shapes.folded_plate import FoldedPlate, plate_rings
+from aag_cad.parts.shapes.threaded import BoltPiece, bolt_form, rod_form
 from aag_cad.units import Floats, vector
 from assembly.base.names import family_name
 from assembly.drawing.joint_sections import callout
@@ -85,7 +85,7 @@ def _pieces(pieces: Iterable[BoltPiece], frame: Frame, flat: Flat) -> Iterator[s
 
 def _bolt_items(bolts: Sequence[Bolt], flat: Flat) -> Iterator[str]:
     for bolt in bolts:
-        yield "".join(polygon_of(item, _BOLT) for item in _pieces(bolt_pieces(bolt), bolt.frame, flat))
+        yield "".join(polygon_of(item, _BOLT) for item in _pieces(bolt_form(bolt).pieces, bolt.frame, flat))
 
 
 def polygon_of(item: str, style: Style) -> str:
@@ -140,7 +140,7 @@ def foot_section_svg(shell: Shell, shoe: Shoe, named: bool, *, language: Languag
         polygon(block, _CONCRETE),
         *_timber(timber, (geodesic, edge)),
         polygon(plate, _STEEL),
-        *(polygon_of(item, _BOLT) for item in _pieces(rod_pieces(rod), rod.frame, flat)),
+        *(polygon_of(item, _BOLT) for item in _pieces(rod_form(rod).pieces, rod.frame, flat)),
         *_bolt_items(bolts, flat),
         line(np.array([(top[0] - side - 60.0, top[1]), (top[0] + side + 60.0, top[1])]), _GROUND),
     ]

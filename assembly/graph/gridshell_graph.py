@@ -1,38 +1,23 @@
 """The gridshell as a graph: every part a node, every joint the edges between the parts that meet in it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import combinations, product
 from typing import NotRequired, TypedDict
 
 import networkx as nx
 import numpy as np
 
-from aag_cad.parts.index import index_of
+from aag_cad.parts.index import Index, index_of
+from aag_cad.parts.kinds import kind_of, shaped
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import (
-    UNMOVED,
-    ClampingBar,
-    Frame,
-    Gridshell,
-    Joint,
-    Mullion,
-    Part,
-    Plank,
-    Shell,
-    Strap,
-    Strip,
-    all_parts,
-    ridge_parts,
-    shell_parts,
-)
+from aag_cad.parts.model import UNMOVED, Frame, Gridshell, Joint, Part, Shell, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame
-from aag_cad.parts.quantities import kind, mass, sizes
+from aag_cad.parts.quantities import mass, sizes
 from aag_cad.units import Floats, Vector, vector
 from assembly.graph.faults import EdgeKind
 from assembly.graph.layers import stacked_planks
 
-_BY_FASTENER: dict[str, EdgeKind] = {"B": "bolted", "W": "screwed", "T": "seated"}
 _BY_JOINT: dict[str, EdgeKind] = {
     "AA": "bolted", "AG": "screwed", "boundary": "screwed", "foot": "bolted", "footing": "seated", "ridge": "bolted",
     "blade": "bladed", "cover": "screwed",
@@ -42,7 +27,7 @@ _BY_JOINT: dict[str, EdgeKind] = {
 class PartNode(TypedDict):
     """What a node of the graph carries; ``position`` is in vault coordinates, mm; ``layer`` is None between layers.
 
-    ``kind`` is the word of the part lists (``aag_cad.parts.quantities.kind``), ``beam`` the mark of the coupled beam
+    ``kind`` is the word of the part lists (``aag_cad.parts.kinds.Kind.name``), ``beam`` the mark of the coupled beam
     that the part is put together with, or "". What is laid on the floor, a plank, has in addition: ``start`` and
     ``end`` of its centre line (vault coordinates, mm); whether it stands ``upright`` on the surface; ``depth_mm``, its
     size along the surface normal; ``min_radius_mm``, to which it can be bent flat-ways; and, only in graphs from
@@ -87,16 +72,12 @@ def part_point(part: Part) -> Floats:
 
     Of a bar and a plank it lies on the centre line, of a strip midway between its edges; else it is the frame's origin.
     """
-    match part:
-        case Plank() | Mullion() | ClampingBar() | Strap():
-            return np.asarray(part.curve.point_spline(part.curve.length / 2.0), dtype=np.float64)
-        case Strip():
-            ends = [edge.point_spline(edge.length / 2.0) for edge in (part.left, part.right)]
-            return np.asarray(np.mean(ends, axis=0), dtype=np.float64)
-        case _:
-            frame = part_frame(part)
-            assert frame is not None
-            return np.array(frame.origin)
+    shape, form = shaped(part)
+    if lines := shape.lines(form):
+        return np.asarray(np.mean([line.point_spline(line.length / 2.0) for line in lines], axis=0), dtype=np.float64)
+    frame = part_frame(part)
+    assert frame is not None
+    return np.array(frame.origin)
 
 
 def _hub(joint: Joint) -> str:
@@ -106,13 +87,20 @@ def _hub(joint: Joint) -> str:
     return next((mark for mark in joint.members if parse_mark(mark).family == "K"), "")
 
 
-def _ties(joint: Joint, planks: Mapping[str, Plank]) -> Iterator[tuple[str, str, EdgeKind]]:
+def _held(fastener: Part) -> EdgeKind:
+    """Return how a fastener holds: what stands on the ground is seated, what has a nut bolted, all else screwed."""
+    row = kind_of(fastener)
+    nuts = any(piece.name == "nut" for piece in row.form(fastener).pieces)
+    return "seated" if row.place == "ground" else "bolted" if nuts else "screwed"
+
+
+def _ties(joint: Joint, index: Index) -> Iterator[tuple[str, str, EdgeKind]]:
     """Yield the pairs of parts that a joint ties together, and how.
 
     A stud, coupling block, strap, shoe, concrete block or blade is the hub that the others are tied to. Without one all
     members are tied pairwise, but for planks, whose crossings are edges of their own, and the fasteners to the first.
     """
-    usual, hub = _BY_JOINT[joint.kind], _hub(joint)
+    usual, hub, planks = _BY_JOINT[joint.kind], _hub(joint), index.planks
     for mark in joint.members:
         if hub and mark != hub:
             on_block = joint.kind in ("AG", "boundary") and mark in planks and planks[mark].beam
@@ -122,7 +110,7 @@ def _ties(joint: Joint, planks: Mapping[str, Plank]) -> Iterator[tuple[str, str,
             if a not in planks or b not in planks:
                 yield a, b, usual
     for fastener in joint.fasteners:
-        yield hub or joint.members[0], fastener, _BY_FASTENER[parse_mark(fastener).letter]
+        yield hub or joint.members[0], fastener, _held(index.parts[fastener])
 
 
 def _crossings(shell: Shell) -> Iterator[tuple[str, str, JointEdge]]:
@@ -164,9 +152,9 @@ def _add_planks(graph: "nx.MultiGraph[str]", shell: Shell, min_radius: float) ->
         graph.add_edge(a, b, key=edge["joint"], **edge)
 
 
-def _add_ties(graph: "nx.MultiGraph[str]", joints: tuple[Joint, ...], planks: Mapping[str, Plank]) -> None:
+def _add_ties(graph: "nx.MultiGraph[str]", joints: tuple[Joint, ...], index: Index) -> None:
     for joint in joints:
-        for a, b, how in _ties(joint, planks):
+        for a, b, how in _ties(joint, index):
             graph.add_edge(a, b, key=joint.mark, **JointEdge(kind=how, joint=joint.mark, joint_kind=joint.kind))
 
 
@@ -179,7 +167,7 @@ def _add_parts(graph: "nx.MultiGraph[str]", gridshell: Gridshell, parts: tuple[P
         graph.add_node(
             part.mark,
             **PartNode(
-                kind=kind(part),
+                kind=kind_of(part).name,
                 family=parse_mark(part.mark).family,
                 shell=shell_of(part.mark),
                 beam=index.beam_of.get(part.mark, ""),
@@ -202,7 +190,7 @@ def assembly_graph(gridshell: Gridshell) -> "nx.MultiGraph[str]":
     _add_parts(graph, gridshell, ridge_parts(gridshell), None)
     for shell in gridshell.shells:
         _add_planks(graph, shell, gridshell.timber.min_bending_radius)
-        _add_ties(graph, shell.joints, index_of(shell).planks)
-    _add_ties(graph, gridshell.joints, {})
+        _add_ties(graph, shell.joints, index_of(shell))
+    _add_ties(graph, gridshell.joints, index_of(gridshell))
     assert len(graph) == len(all_parts(gridshell))
     return graph

@@ -7,10 +7,10 @@ import numpy as np
 from aag_cad.findings import Finding
 from aag_cad.language import Text
 from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Frame, Gridshell, Shell
 from aag_cad.parts.products import product_key
-from aag_cad.parts.quantities import material
 from aag_cad.units import Floats, vector
 from assembly.base.segments import Limits, Pose, Segment, Segmentation, Splice
 from assembly.transport.cut_pieces import Divisible, Run, cut_stops, divisible, run_between, run_splices
@@ -98,7 +98,8 @@ def _segment(item: Divisible, name: str, stops: tuple[int, int], run: Run, shell
     columns = _columns(item, start, end, studs)
     few = len(run.geodesics) < STIFF_GEODESICS
     ends = _outermost(item, start, end, columns, blocks) if few else ([], [])
-    steel = sum(item.masses[mark] for mark in run.parts if mark in item.small and material(item.small[mark]) == "steel")
+    small = (mark for mark in run.parts if mark in item.small)
+    steel = sum(item.masses[mark] for mark in small if kind_of(item.small[mark]).material == "steel")
     return Segment(
         name,
         shell.mark,

@@ -13,7 +13,7 @@ from aag_cad.colours import LEGEND, linear
 from aag_cad.design import Design
 from aag_cad.errors import FileError
 from aag_cad.export.cad.gltf import write_glb
-from aag_cad.export.ifc.kinds import colour_name
+from aag_cad.parts.kinds import colour_name
 from aag_cad.parts.mesh import placed, product_mesh, shell_mesh
 from aag_cad.parts.model import Gridshell, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import product_key

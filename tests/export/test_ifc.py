@@ -15,10 +15,10 @@ from test_ifc_sample import sampled
 from aag_cad.errors import DesignError, FileError, NetworkError
 from aag_cad.export.ifc.frame import TIMESTAMP
 from aag_cad.export.ifc.joints import joint_sides
-from aag_cad.export.ifc.kinds import IFC_KINDS, colour
 from aag_cad.export.ifc.model import write_ifc
 from aag_cad.export.ifc.options import IfcGeometry, IfcOptions, IfcSchema, view_definition
 from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import KINDS, colour
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Footing, Gridshell, Joint, Part, Shell, all_joints, all_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key
@@ -111,7 +111,7 @@ def test_guids_stay_with_the_mark_and_differ_between_projects(sample: Gridshell,
 def test_every_part_and_assembly_is_there_under_its_mark(
     sample: Gridshell, ifc: File, parts: Mapping[str, Part]
 ) -> None:
-    entities = Counter(IFC_KINDS[type(part)].entity for part in parts.values())
+    entities = Counter(KINDS[type(part)].ifc.entity for part in parts.values())
     for entity, count in entities.items():
         assert len(ifc.by_type(entity)) == count
     assemblies = [sample.name, *(shell.mark for shell in sample.shells)]

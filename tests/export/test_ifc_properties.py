@@ -16,7 +16,7 @@ from aag_cad.export.ifc.options import IfcOptions
 from aag_cad.export.ifc.properties import hole_text
 from aag_cad.parts.model import Footing, Gridshell, Hole, Part, Plank, Rod, Strip, all_parts
 from aag_cad.parts.quantities import largest_twist, mass, material_name, smallest_radius
-from aag_cad.parts.strips import flat_pattern
+from aag_cad.parts.shapes.sheet import flat_pattern
 from aag_cad.shop.groups import all_planks, drill_groups
 from aag_cad.units import deg_per_m
 from assembly.base.steps import Step

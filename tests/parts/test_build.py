@@ -11,8 +11,9 @@ from aag_cad.design import Design
 from aag_cad.errors import DesignError
 from aag_cad.network.model import CurveNetwork
 from aag_cad.parts.build import gridshell_from
-from aag_cad.parts.mesh import plank_mesh, shell_mesh
+from aag_cad.parts.mesh import shell_mesh
 from aag_cad.parts.model import Footing, Gridshell, Plank, Rod, Shell, all_joints, shell_parts
+from aag_cad.parts.shapes.bar import plank_mesh
 from aag_cad.pipeline import gridshell_of
 from aag_cad.units import Floats
 

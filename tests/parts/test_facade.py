@@ -17,13 +17,12 @@ from aag_cad.network.model import CurveNetwork
 from aag_cad.network.ridge import ridge_distance
 from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.clearance import placed_points
-from aag_cad.parts.depth import depths_in
 from aag_cad.parts.facade import FacadePieces, covered, placed_facade
 from aag_cad.parts.forming import formed_points
-from aag_cad.parts.mesh import frame_matrix
+from aag_cad.parts.mesh import depths_in, frame_matrix
 from aag_cad.parts.model import ClampingBar, Gridshell, Mullion, Part, Shell, Strip, shell_parts
 from aag_cad.parts.products import part_frame
-from aag_cad.parts.strips import flat_pattern, sheet_radius, strip_depth, strip_mesh, strip_points
+from aag_cad.parts.shapes.sheet import flat_pattern, sheet_radius, strip_depth, strip_mesh, strip_points
 from aag_cad.pipeline import chart_of
 from aag_cad.units import Floats
 

@@ -7,10 +7,9 @@ from aag_cad.design import Design, load_design, parse_design
 from aag_cad.errors import DesignError
 from aag_cad.network.model import CurveNetwork
 from aag_cad.parts.build import gridshell_from
-from aag_cad.parts.depth import depths_in
-from aag_cad.parts.mesh import frame_matrix
+from aag_cad.parts.mesh import depths_in, frame_matrix
 from aag_cad.parts.model import Gridshell, Shell, Shoe
-from aag_cad.parts.plates import hole_axes, plate_legs
+from aag_cad.parts.shapes.folded_plate import hole_axes, plate_legs
 from aag_cad.units import Floats
 
 

@@ -3,8 +3,16 @@
 import numpy as np
 import pytest
 
-from aag_cad.parts.model import FoldedPlate, PlateHole
-from aag_cad.parts.plates import developed_length, hole_axes, plate_depth, plate_legs, plate_rings, plate_volume
+from aag_cad.parts.shapes.folded_plate import (
+    FoldedPlate,
+    PlateHole,
+    developed_length,
+    hole_axes,
+    plate_depth,
+    plate_legs,
+    plate_rings,
+    plate_volume,
+)
 from aag_cad.parts.triangles import tube
 
 ANGLE = FoldedPlate(

@@ -8,6 +8,7 @@ import pytest
 
 from aag_cad.design import Design
 from aag_cad.geometry.framed import FramedCurve, framed_curve
+from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.mesh import product_mesh
 from aag_cad.parts.model import (
     Blade,
@@ -31,10 +32,8 @@ from aag_cad.parts.model import (
 from aag_cad.parts.quantities import (
     gross_volume,
     hole_count,
-    kind,
     largest_twist,
     mass,
-    material,
     material_name,
     section_area,
     smallest_radius,
@@ -169,9 +168,9 @@ def test_a_screw_has_the_volume_of_its_mesh() -> None:
 
 
 def test_steel_is_steel_and_timber_has_its_species_and_class() -> None:
-    assert (kind(BOLT), material(BOLT), material_name(BOLT, ASH)) == ("bolt", "steel", "steel")
+    assert (kind_of(BOLT).name, kind_of(BOLT).material, material_name(BOLT, ASH)) == ("bolt", "steel", "steel")
     stud = Stud("S1-N-001", FRAME, 220.0, 24.0, ())
-    assert (kind(stud), material(stud), material_name(stud, ASH)) == ("stud", "timber", "ash D50")
+    assert (kind_of(stud).name, kind_of(stud).material, material_name(stud, ASH)) == ("stud", "timber", "ash D50")
 
 
 def test_steel_of_feet_and_ridge_less_its_holes_has_the_volume_of_its_mesh(vault: Gridshell, shell: Shell) -> None:
@@ -203,8 +202,8 @@ def test_a_shell_weighs_about_what_the_paper_says(vault: Gridshell, shell: Shell
     masses = {"timber": 0.0, "steel": 0.0}
     beam_joints = {mark for joint in shell.joints if joint.kind in ("AA", "AG", "boundary") for mark in joint.fasteners}
     fasteners = 0.0
-    for part in (part for part in shell_parts(shell) if material(part) in masses):
-        masses[material(part)] += mass(part, vault.timber)
+    for part in (part for part in shell_parts(shell) if kind_of(part).material in masses):
+        masses[kind_of(part).material] += mass(part, vault.timber)
         fasteners += mass(part, vault.timber) if part.mark in beam_joints else 0.0
     masses["steel"] += sum(mass(part, vault.timber) for part in ridge_parts(vault)) / len(vault.shells)
     assert masses["timber"] == pytest.approx(300.0, rel=0.1)

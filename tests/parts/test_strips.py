@@ -15,7 +15,7 @@ from aag_cad.geometry.framed import FramedCurve, framed_curve
 from aag_cad.geometry.revolution import AsymptoticChart
 from aag_cad.network.model import CurveId, CurveNetwork
 from aag_cad.parts.model import Strip
-from aag_cad.parts.strips import (
+from aag_cad.parts.shapes.sheet import (
     chord_offsets,
     flat_pattern,
     sheet_of,

@@ -17,7 +17,7 @@ from solid_figures import signed_volume
 
 from aag_cad.errors import SolidError
 from aag_cad.parts.model import Bolt, CouplingBlock, CrossHole, Frame, Hole, Screw, Stud
-from aag_cad.solids.hardware import block_solid, bolt_solid, screw_solid, stud_solid
+from aag_cad.solids.products import product_solid
 from aag_cad.units import Floats
 
 FRAME = Frame((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -33,10 +33,10 @@ SCREW = Screw("S1-K-001-W1", FRAME, 6.0, 60.0, 12.0)
 BLOCK_HOLES = (Hole(-20.0, -18.0, 9.0, "bolt", "S1-K-001"), Hole(30.0, 25.0, 6.5, "bolt", "S1-K-001"))
 BLOCK = CouplingBlock("S1-K-001", FRAME, 120.0, 100.0, 24.0, BLOCK_HOLES)
 MAKERS: dict[str, Callable[[], TopoDS_Solid]] = {
-    "stud": lambda: stud_solid(STUD),
-    "bolt": lambda: bolt_solid(BOLT),
-    "screw": lambda: screw_solid(SCREW),
-    "block": lambda: block_solid(BLOCK),
+    "stud": lambda: product_solid(STUD),
+    "bolt": lambda: product_solid(BOLT),
+    "screw": lambda: product_solid(SCREW),
+    "block": lambda: product_solid(BLOCK),
 }
 
 
@@ -101,15 +101,15 @@ def test_hardware_is_one_valid_solid_with_positive_volume(name: str) -> None:
 
 
 def test_the_stud_is_24_mm_across_each_pair_of_flats_and_x_is_normal_to_one() -> None:
-    angles = {angle for angle, _distance, _height in flats(stud_solid(STUD))}
+    angles = {angle for angle, _distance, _height in flats(product_solid(STUD))}
     assert angles == {0.0, 60.0, 120.0, 180.0, 240.0, 300.0}
-    assert [distance for _angle, distance, _height in flats(stud_solid(STUD))] == pytest.approx([12.0] * 6, abs=1e-9)
-    low, high = bounds(stud_solid(STUD))
+    assert [distance for _angle, distance, _height in flats(product_solid(STUD))] == pytest.approx([12.0] * 6, abs=1e-9)
+    low, high = bounds(product_solid(STUD))
     assert [low[2], high[2]] == pytest.approx([-110.0, 110.0], abs=1e-6)
 
 
 def test_the_holes_of_a_stud_go_square_through_its_flats_at_their_heights() -> None:
-    shape = stud_solid(STUD)
+    shape = product_solid(STUD)
     for hole, (radius, place, axis) in zip(
         STUD_HOLES, sorted(cylinder_faces(shape), key=lambda found: float(found[1][2])), strict=True
     ):
@@ -122,7 +122,7 @@ def test_the_holes_of_a_stud_go_square_through_its_flats_at_their_heights() -> N
 
 
 def test_an_m8_bolt_is_13_mm_across_flats_and_reaches_from_its_head_past_its_nut() -> None:
-    shape = bolt_solid(BOLT)
+    shape = product_solid(BOLT)
     assert [distance for _angle, distance, _height in flats(shape)] == pytest.approx([6.5] * 12, abs=1e-9)
     low, high = bounds(shape)
     assert [low[2], high[2]] == pytest.approx([-2.0 - 5.3, 65.0 - 2.0], abs=1e-6)
@@ -133,18 +133,18 @@ def test_an_m8_bolt_is_13_mm_across_flats_and_reaches_from_its_head_past_its_nut
 def test_a_bolt_has_the_volume_of_head_washers_shank_nut_and_tip() -> None:
     tip = 65.0 - 2.0 - (48.0 + 2.0 + 6.8)
     pieces = hexagon(13.0) * (5.3 + 6.8) + disc(24.0) * 4.0 + disc(8.0) * (48.0 + tip)
-    assert signed_volume(bolt_solid(BOLT), 1e-9) == pytest.approx(pieces, rel=1e-9)
+    assert signed_volume(product_solid(BOLT), 1e-9) == pytest.approx(pieces, rel=1e-9)
 
 
 def test_a_bolt_that_ends_inside_its_nut_has_no_tip() -> None:
     short = Bolt("S1-N-001-B1", FRAME, 8.0, 55.0, 48.0, 13.0, 5.3, 6.8, 24.0, 2.0)
-    low, high = bounds(bolt_solid(short))
+    low, high = bounds(product_solid(short))
     assert high[2] == pytest.approx(48.0 + 2.0 + 6.8, abs=1e-6)
     assert low[2] == pytest.approx(-7.3, abs=1e-6)
 
 
 def test_a_countersunk_screw_is_flush_at_the_face_of_the_plank() -> None:
-    shape = screw_solid(SCREW)
+    shape = product_solid(SCREW)
     low, high = bounds(shape)
     assert [*low, *high] == pytest.approx([-6.0, -6.0, 0.0, 6.0, 6.0, 60.0], abs=1e-6)
     (cone,) = surfaces(shape, GeomAbs_SurfaceType.GeomAbs_Cone)
@@ -154,7 +154,7 @@ def test_a_countersunk_screw_is_flush_at_the_face_of_the_plank() -> None:
 
 
 def test_a_coupling_block_is_drilled_through_the_gap_where_its_holes_say() -> None:
-    shape = block_solid(BLOCK)
+    shape = product_solid(BLOCK)
     low, high = bounds(shape)
     assert [*low, *high] == pytest.approx([-60.0, -50.0, -12.0, 60.0, 50.0, 12.0], abs=1e-6)
     for hole, (radius, place, axis) in zip(BLOCK_HOLES, cylinder_faces(shape), strict=True):
@@ -166,9 +166,9 @@ def test_a_coupling_block_is_drilled_through_the_gap_where_its_holes_say() -> No
 
 def test_a_hole_that_cuts_a_stud_in_two_is_refused() -> None:
     with pytest.raises(SolidError, match="S1-N-001: 2 solids came out where one is due"):
-        stud_solid(Stud("S1-N-001", FRAME, 220.0, 24.0, (CrossHole(0.0, 0.0, 30.0),)))
+        product_solid(Stud("S1-N-001", FRAME, 220.0, 24.0, (CrossHole(0.0, 0.0, 30.0),)))
 
 
 def test_a_hole_that_breaks_out_of_a_block_is_refused() -> None:
     with pytest.raises(SolidError, match="S1-K-001: the hole of 9 mm for S1-K-001 at 58"):
-        block_solid(CouplingBlock("S1-K-001", FRAME, 120.0, 100.0, 24.0, (Hole(58.0, 0.0, 9.0, "bolt", "S1-K-001"),)))
+        product_solid(CouplingBlock("S1-K-001", FRAME, 120.0, 100.0, 24.0, (Hole(58.0, 0.0, 9.0, "bolt", "S1-K-001"),)))

@@ -15,7 +15,7 @@ from aag_cad.geometry.developable import ruled_edges
 from aag_cad.geometry.framed import offset_curve
 from aag_cad.network.model import CurveId, CurveNetwork
 from aag_cad.parts.model import Strip
-from aag_cad.parts.strips import flat_pattern, sheet_of, strip_depth
+from aag_cad.parts.shapes.sheet import flat_pattern, sheet_of, strip_depth
 from aag_cad.solids.strips import strip_solid
 
 

@@ -8,12 +8,12 @@ import trimesh
 from trimesh.visual.material import PBRMaterial
 
 from aag_cad.colours import LEGEND, linear
-from aag_cad.export.ifc.kinds import colour_name
 from aag_cad.files import write_bytes
+from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import colour_name, kind_of
 from aag_cad.parts.mesh import frame_matrix, product_mesh
 from aag_cad.parts.model import Frame, Gridshell, Part, ridge_parts, shell_parts
-from aag_cad.parts.products import part_frame, product_key, product_name
-from aag_cad.parts.quantities import material
+from aag_cad.parts.products import part_frame, product_name
 from aag_cad.parts.triangles import Mesh
 from aag_cad.units import MM_PER_M, Floats
 
@@ -30,7 +30,7 @@ def matrix_in_metres(frame: Frame) -> Floats:
 
 
 def _material(part: Part) -> PBRMaterial:
-    metal = material(part) in ("steel", "aluminium")
+    metal = kind_of(part).material in ("steel", "aluminium")
     return PBRMaterial(
         name=colour_name(part),
         metallicFactor=1.0 if metal else 0.0,
@@ -49,9 +49,10 @@ def glb_scene(gridshell: Gridshell) -> trimesh.Scene:
     graph: Any = scene.graph
     graph.update(gridshell.name, _ROOT, matrix=_Y_UP)
     finishes: dict[str, PBRMaterial] = {}
+    keys = index_of(gridshell).keys
 
     def add(part: Part, parent: str) -> None:
-        name, frame = f"{product_name(part)} ({product_key(part)})", part_frame(part)
+        name, frame = f"{product_name(part)} ({keys[part.mark]})", part_frame(part)
         if name not in scene.geometry:
             finish = finishes.setdefault(colour_name(part), _material(part))
             scene.geometry[name] = _mesh_in_metres(product_mesh(part), finish)

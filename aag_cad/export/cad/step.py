@@ -13,11 +13,11 @@ from OCP.TopoDS import TopoDS_Solid
 from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from aag_cad.export.cad.step_text import Header, kernel_settings, named, placement, step_bytes
-from aag_cad.export.ifc.kinds import colour
 from aag_cad.files import write_bytes
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Frame, Gridshell, Shell, all_parts, ridge_parts, shell_parts
-from aag_cad.parts.products import part_frame, product_key, product_name
+from aag_cad.parts.kinds import colour
+from aag_cad.parts.model import Frame, Gridshell, Shell, ridge_parts, shell_parts
+from aag_cad.parts.products import part_frame, product_name
 from aag_cad.solids.products import product_solids
 
 
@@ -65,19 +65,18 @@ def _products(tools: _Tools, gridshell: Gridshell, solids: Mapping[str, TopoDS_S
     """Return the product's label of each part by its mark; products of one name but different make are numbered."""
     labels: dict[str, TDF_Label] = {}
     taken: Counter[str] = Counter()
-    keys = {part.mark: product_key(part) for part in all_parts(gridshell)}
-    for part in all_parts(gridshell):
-        key = keys[part.mark]
+    index = index_of(gridshell)
+    for mark, key in index.keys.items():
         if key in labels:
             continue
-        name = product_name(part)
+        name = product_name(part := index.parts[mark])
         taken[name] += 1
         labels[key] = tools.shapes.AddShape(solids[key], False, False)
         named(labels[key], name if taken[name] == 1 else f"{name} ({taken[name]})")
         # The kernel reckons with linear colours and writes COLOUR_RGB as sRGB numbers, which readers show as they are.
         tint = Quantity_Color(*colour(part), Quantity_TypeOfColor.Quantity_TOC_sRGB)
         tools.colours.SetColor(labels[key], tint, XCAFDoc_ColorType.XCAFDoc_ColorSurf)
-    return {mark: labels[key] for mark, key in keys.items()}
+    return {mark: labels[key] for mark, key in index.keys.items()}
 
 
 def _shell(tools: _Tools, shell: Shell, products: Mapping[str, TDF_Label]) -> TDF_Label:

@@ -1,16 +1,14 @@
 """Shapes of the products in IFC: triangulated or B-spline bodies, extruded fasteners, axes of planks, colours."""
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from aag_cad.export.ifc.brep import advanced_brep
 from aag_cad.export.ifc.frame import Entity, IfcModel
-from aag_cad.export.ifc.kinds import colour, colour_name
-from aag_cad.parts.fasteners import BoltPiece, bolt_pieces, rod_pieces
 from aag_cad.parts.forming import plank_axes
-from aag_cad.parts.mesh import MESH_SPACING, product_mesh
-from aag_cad.parts.model import Bolt, FlatBar, Part, Plank, Rod, Screw
+from aag_cad.parts.kinds import colour, colour_name, shaped
+from aag_cad.parts.model import Part, Plank
+from aag_cad.parts.shapes.bar import BAR, MESH_SPACING
+from aag_cad.parts.shapes.threaded import THREADED, Threaded
 from aag_cad.parts.triangles import Mesh, regular_polygon
 from aag_cad.units import Floats
 
@@ -76,29 +74,25 @@ def extrusion(model: IfcModel, profile: Entity, low: float, high: float) -> Enti
     return model.file.create_entity("IfcExtrudedAreaSolid", profile, at, up, high - low)
 
 
-def _threaded_solids(model: IfcModel, pieces: Iterable[BoltPiece]) -> list[Entity]:
-    """Return the pieces of a bolt or threaded rod, one upon the other, so that nothing overlaps."""
+def _threaded_solids(model: IfcModel, form: Threaded) -> list[Entity]:
+    """Return the pieces of a fastener, one upon the other, so that nothing overlaps."""
     return [
         extrusion(model, _hexagon(model, p.size) if p.hexagonal else _circle(model, p.size), p.low, p.high)
-        for p in pieces
+        for p in form.pieces
     ]
 
 
 def _body(model: IfcModel, part: Part) -> tuple[str, list[Entity]]:
     """Return the representation type and the items of a part's product."""
-    match part:
-        case Bolt():
-            return "SweptSolid", _threaded_solids(model, bolt_pieces(part))
-        case Rod():
-            return "SweptSolid", _threaded_solids(model, rod_pieces(part))
-        case Screw():
-            return "SweptSolid", [extrusion(model, _circle(model, part.diameter), 0.0, part.length)]
-        case _ if model.options.geometry == "brep" and isinstance(part, FlatBar):
-            return "AdvancedBrep", [advanced_brep(model, part)]
-        case _ if model.schema == "IFC2X3":
-            return "Brep", [faceted_brep(model, welded(product_mesh(part)))]
-        case _:
-            return "Tessellation", [face_set(model, welded(product_mesh(part)))]
+    shape, form = shaped(part)
+    if shape is THREADED:
+        return "SweptSolid", _threaded_solids(model, form)
+    if shape is BAR and model.options.geometry == "brep":
+        return "AdvancedBrep", [advanced_brep(model, form)]
+    mesh = welded(shape.mesh(form))
+    if model.schema == "IFC2X3":
+        return "Brep", [faceted_brep(model, mesh)]
+    return "Tessellation", [face_set(model, mesh)]
 
 
 def _axis(model: IfcModel, plank: Plank) -> Entity:

@@ -4,7 +4,8 @@ from collections.abc import Iterable, Mapping
 
 from aag_cad.errors import NetworkError
 from aag_cad.export.ifc.frame import Entity, IfcModel, rooted
-from aag_cad.parts.model import Blade, CouplingBlock, Joint, Part, Plank, Shoe, Strap, Stud
+from aag_cad.parts.kinds import kind_of
+from aag_cad.parts.model import Joint, Part
 
 
 def joint_sides(joint: Joint, parts: Mapping[str, Part]) -> tuple[list[str], list[str]]:
@@ -13,10 +14,8 @@ def joint_sides(joint: Joint, parts: Mapping[str, Part]) -> tuple[list[str], lis
     Siblings meet others as their coupled beam, and only each other where nothing else meets; studs, blocks and steel
     plates realise the joint. NetworkError if fewer than two members meet.
     """
-    through = [
-        mark for mark in joint.members if not isinstance(parts[mark], Stud | CouplingBlock | Strap | Shoe | Blade)
-    ]
-    as_beams = [part.beam if isinstance(part := parts[mark], Plank) and part.beam else mark for mark in through]
+    through = [mark for mark in joint.members if kind_of(parts[mark]).role == "member"]
+    as_beams = [getattr(parts[mark], "beam", "") or mark for mark in through]
     for sides in (list(dict.fromkeys(as_beams)), through, list(joint.members)):
         if len(sides) >= 2:
             return sides, [mark for mark in (*joint.members, *joint.fasteners) if mark not in through + sides]

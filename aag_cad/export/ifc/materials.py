@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 
 from aag_cad.export.ifc.frame import Entity, IfcModel, rooted
-from aag_cad.export.ifc.kinds import IFC_KINDS
 from aag_cad.export.ifc.sets import Property, properties
 from aag_cad.export.ifc.types import Product
-from aag_cad.parts.model import ClampingBar, Mullion, Part, Plank, Timber
-from aag_cad.parts.quantities import Material, density, material, material_name, sizes
+from aag_cad.parts.kinds import Material, kind_of
+from aag_cad.parts.model import Part, Timber
+from aag_cad.parts.quantities import density, material_name, sizes
+from aag_cad.parts.shapes.bar import BAR
 
 # The categories that IfcMaterial proposes.
 _CATEGORIES: dict[Material, str] = {
@@ -25,7 +26,8 @@ def _wood(timber: Timber) -> list[Property]:
 
 def _material(model: IfcModel, part: Part, timber: Timber) -> Entity:
     """Write the material of a part with its density (kg/m3), and for timber species, class and moduli (N/mm2)."""
-    name, made_of, wooden = material_name(part, timber), material(part), material(part) == "timber"
+    name, made_of = material_name(part, timber), kind_of(part).material
+    wooden = made_of == "timber"
     if model.schema == "IFC2X3":
         written = model.file.create_entity("IfcMaterial", name)
         model.file.create_entity("IfcGeneralMaterialProperties", written, MassDensity=density(part, timber))
@@ -72,11 +74,12 @@ def material_key(part: Part, schema: str) -> tuple[str, str, float, float]:
     sheets their thickness as a layer.
     """
     _length, width, thickness = (round(size, 3) for size in sizes(part))
-    if isinstance(part, Plank | Mullion | ClampingBar) and schema != "IFC2X3":
-        return "profile", material(part), width, thickness
-    if IFC_KINDS[type(part)].entity == "IfcPlate":
-        return "layer", material(part), 0.0, thickness
-    return "plain", material(part), 0.0, 0.0
+    row = kind_of(part)
+    if row.ifc.entity == "IfcPlate":
+        return "layer", row.material, 0.0, thickness
+    if row.shape is BAR and schema != "IFC2X3":
+        return "profile", row.material, width, thickness
+    return "plain", row.material, 0.0, 0.0
 
 
 def associate_materials(

@@ -7,28 +7,18 @@ from aag_cad.export.ifc.assembly_sets import write_assembly_sets
 from aag_cad.export.ifc.bodies import mapped_shape
 from aag_cad.export.ifc.frame import Entity, IfcModel, aggregate, local_placement, rooted, start_file
 from aag_cad.export.ifc.joints import write_joints
-from aag_cad.export.ifc.kinds import IFC_KINDS
 from aag_cad.export.ifc.materials import associate_materials
 from aag_cad.export.ifc.options import IfcOptions, IfcSchema, require_known
 from aag_cad.export.ifc.properties import write_fabrication
 from aag_cad.export.ifc.schedule import write_schedule
-from aag_cad.export.ifc.schemas import type_word
+from aag_cad.export.ifc.schemas import known, type_word
 from aag_cad.export.ifc.site import spatial_tree
 from aag_cad.export.ifc.standard_sets import write_product_sets, write_serial_numbers
 from aag_cad.export.ifc.types import Product, define_types, products
 from aag_cad.files import replacing
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import (
-    Footing,
-    Frame,
-    Gridshell,
-    Part,
-    Shell,
-    all_joints,
-    all_parts,
-    ridge_parts,
-    shell_parts,
-)
+from aag_cad.parts.kinds import kind_of
+from aag_cad.parts.model import Frame, Gridshell, Part, Shell, all_joints, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame
 from aag_cad.shop.groups import all_planks, templates_of
 from assembly.base.steps import Step
@@ -49,9 +39,9 @@ def _assembly(
 
 
 def _occurrence(model: IfcModel, part: Part, product: Product, parent: Entity, unmoved: Entity) -> Entity:
-    kind = IFC_KINDS[type(part)]
+    kind = kind_of(part).ifc
     # Its type says what it is; only footings of IFC2X3 have to say so themselves.
-    own = {"PredefinedType": kind.predefined} if model.schema == "IFC2X3" and isinstance(part, Footing) else {}
+    own = known("IFC2X3", kind.entity, PredefinedType=kind.predefined) if model.schema == "IFC2X3" else {}
     return rooted(
         model, kind.entity, (part.mark,), part.mark, None, type_word(model.schema, kind),
         local_placement(model, parent, part_frame(part)), mapped_shape(model, product.maps, unmoved), part.mark, **own,
@@ -123,7 +113,7 @@ def ifc_model(gridshell: Gridshell, steps: Sequence[Step] | None = None, options
     model = start_file(gridshell, options)
     storey = spatial_tree(model, gridshell)
     parts = all_parts(gridshell)
-    found = products(model, parts)
+    found = products(model, gridshell)
     product_of = {part.mark: product for product in found for part in product.parts}
     elements = _write_vault(model, gridshell, storey, product_of)
     define_types(model, found, elements)

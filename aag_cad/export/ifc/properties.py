@@ -5,40 +5,26 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from aag_cad.export.ifc.frame import Entity, IfcModel
 from aag_cad.export.ifc.sets import Property, write_property_set
+from aag_cad.parts.kinds import kind_of, shaped
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import (
-    Blade,
-    Bolt,
-    ClampingBar,
-    CouplingBlock,
-    FlatBar,
-    Hole,
-    Mullion,
-    Part,
-    Plank,
-    Rod,
-    Screw,
-    Shoe,
-    Strap,
-    Stud,
-    Timber,
-)
+from aag_cad.parts.model import CrossHole, Hole, Part, Plank, Timber
 from aag_cad.parts.products import product_name
-from aag_cad.parts.quantities import hole_count, kind, largest_twist, mass, sizes, smallest_radius
+from aag_cad.parts.quantities import hole_count, largest_twist, mass, sizes, smallest_radius
+from aag_cad.parts.shapes.bar import BAR
+from aag_cad.parts.shapes.folded_plate import PlateHole
 from aag_cad.units import deg_per_m
 
 FABRICATION = "AAG_Fabrication"
-# Bought by the box: they share one set for each product, which therefore holds no mark.
-FASTENERS = Bolt | Screw | Rod
 
 
-def hole_text(number: int, hole: Hole) -> str:
-    """Return a hole as it stands in the hole table: number, station, offset, diameter, use and joint."""
-    slot = f" slot {hole.slot:g}" if hole.slot else ""
-    return (
-        f"{number}: x {hole.station:.1f}, y {round(hole.offset, 1) + 0.0:+.1f}, "
-        f"d {hole.diameter:g}{slot} {hole.use} {hole.joint}"
-    )
+def hole_text(number: int, hole: Hole | PlateHole | CrossHole) -> str:
+    """Return a hole as it stands in the hole table: number, place and diameter, of what is drilled use and joint."""
+    if isinstance(hole, CrossHole):
+        return f"{number}: z {hole.height:+.1f}, at {math.degrees(hole.angle):.1f} deg, d {hole.diameter:g}"
+    text = f"{number}: x {hole.station:.1f}, y {round(hole.offset, 1) + 0.0:+.1f}, d {hole.diameter:g}"
+    if isinstance(hole, PlateHole):
+        return text
+    return f"{text}{f' slot {hole.slot:g}' if hole.slot else ''} {hole.use} {hole.joint}"
 
 
 def hole_table(part: Part) -> str:
@@ -46,32 +32,16 @@ def hole_table(part: Part) -> str:
 
     x and y of a hole are those of the blank, the block or the unfolded plate; z is along a stud from its centre.
     """
-    match part:
-        case Plank() | Mullion() | ClampingBar() | Strap():
-            texts = [hole_text(number, hole) for number, hole in enumerate(part.blank.holes, start=1)]
-        case CouplingBlock():
-            texts = [hole_text(number, hole) for number, hole in enumerate(part.holes, start=1)]
-        case Stud():
-            texts = [
-                f"{number}: z {hole.height:+.1f}, at {math.degrees(hole.angle):.1f} deg, d {hole.diameter:g}"
-                for number, hole in enumerate(part.holes, start=1)
-            ]
-        case Shoe() | Blade():
-            texts = [
-                f"{number}: x {hole.station:.1f}, y {round(hole.offset, 1) + 0.0:+.1f}, d {hole.diameter:g}"
-                for number, hole in enumerate(part.plate.holes, start=1)
-            ]
-        case _:
-            texts = []
-    return "; ".join(texts)
+    shape, form = shaped(part)
+    return "; ".join(hole_text(number, hole) for number, hole in enumerate(shape.holes(form), start=1))
 
 
 def make(part: Part, timber: Timber) -> list[Property]:
     """Return what all parts of one product share: kind, product, sizes (mm), holes and mass (kg)."""
     length, width, thickness = (round(size, 3) for size in sizes(part))
-    blank = "Blank" if isinstance(part, FlatBar) else ""
+    blank = "Blank" if kind_of(part).shape is BAR else ""
     return [
-        ("Kind", "IfcLabel", kind(part)),
+        ("Kind", "IfcLabel", kind_of(part).name),
         ("Product", "IfcLabel", product_name(part)),
         (f"{blank}Length", "IfcPositiveLengthMeasure", length),
         (f"{blank}Width", "IfcPositiveLengthMeasure", width),
@@ -126,7 +96,8 @@ def write_fabrication(
     """
     for key, parts in products:
         made = make(parts[0], timber)
-        if isinstance(parts[0], FASTENERS):
+        if kind_of(parts[0]).role == "fastener":
+            # Out of a box: they share one set for each product, which therefore holds no mark.
             write_property_set(model, FABRICATION, key, made, [occurrences[part.mark] for part in parts])
             continue
         for part in parts:

@@ -4,8 +4,8 @@ from functools import cache
 
 import ifcopenshell
 
-from aag_cad.export.ifc.kinds import IfcKind
 from aag_cad.export.ifc.options import IfcSchema
+from aag_cad.parts.kinds import IfcKind
 
 
 @cache

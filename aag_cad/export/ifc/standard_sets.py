@@ -5,13 +5,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from aag_cad.export.ifc.frame import Entity, IfcModel
-from aag_cad.export.ifc.kinds import IFC_KINDS
 from aag_cad.export.ifc.options import IfcSchema
 from aag_cad.export.ifc.sets import Property, Quantity, write_property_set, write_quantities
-from aag_cad.parts.model import Bolt, ClampingBar, Footing, Mullion, Part, Plank, Rod, Strip, Timber
+from aag_cad.parts.kinds import kind_of, shaped
+from aag_cad.parts.model import Part, Plank, Timber
 from aag_cad.parts.products import product_name
 from aag_cad.parts.quantities import density, gross_volume, mass, section_area, sizes, volume
-from aag_cad.parts.strips import flat_pattern
+from aag_cad.parts.shapes.sheet import SHEET, flat_pattern
 from aag_cad.units import MM2_PER_M2, MM3_PER_M3, Floats
 
 _COMMON = {
@@ -36,32 +36,33 @@ MANUFACTURER = "Pset_ManufacturerOccurrence"
 
 
 def _common(part: Part) -> list[Property]:
-    entity = IFC_KINDS[type(part)].entity
+    entity = kind_of(part).ifc.entity
     rows: list[Property] = [("Reference", "IfcIdentifier", product_name(part))]
     if entity in ("IfcMember", "IfcPlate"):
         rows.append(("IsExternal", "IfcBoolean", True))
     if entity in ("IfcMember", "IfcPlate", "IfcFooting"):
-        rows.append(("LoadBearing", "IfcBoolean", not isinstance(part, Strip | Mullion | ClampingBar)))
+        rows.append(("LoadBearing", "IfcBoolean", kind_of(part).place != "cover"))
     return rows
 
 
 def property_sets(part: Part, schema: IfcSchema) -> dict[str, list[Property]]:
     """Return the standard property sets of a part's product, by name, as far as the schema has them."""
-    found = {_COMMON[IFC_KINDS[type(part)].entity]: _common(part)}
-    if isinstance(part, Bolt):
+    kind, (length, diameter, _thickness) = kind_of(part).ifc, sizes(part)
+    found = {_COMMON[kind.entity]: _common(part)}
+    if kind.predefined == "BOLT":
         found["Pset_MechanicalFastenerBolt"] = [
-            ("ThreadDiameter", "IfcPositiveLengthMeasure", part.diameter),
+            ("ThreadDiameter", "IfcPositiveLengthMeasure", diameter),
             ("NutsCount", "IfcCountMeasure", 1),
             ("WashersCount", "IfcCountMeasure", 2),
             ("HeadShape", "IfcLabel", "hexagon"),
             ("NutShape", "IfcLabel", "hexagon"),
             ("WasherShape", "IfcLabel", "round"),
         ]
-    if isinstance(part, Rod):
+    if kind.predefined == "ANCHORBOLT":
         found["Pset_MechanicalFastenerAnchorBolt"] = [
-            ("AnchorBoltLength", "IfcPositiveLengthMeasure", round(part.length, 3)),
-            ("AnchorBoltDiameter", "IfcPositiveLengthMeasure", part.diameter),
-            ("AnchorBoltThreadLength", "IfcPositiveLengthMeasure", round(part.length, 3)),
+            ("AnchorBoltLength", "IfcPositiveLengthMeasure", round(length, 3)),
+            ("AnchorBoltDiameter", "IfcPositiveLengthMeasure", diameter),
+            ("AnchorBoltThreadLength", "IfcPositiveLengthMeasure", round(length, 3)),
         ]
     return {name: rows for name, rows in found.items() if schema != "IFC2X3" or name not in _NOT_IN_IFC2X3}
 
@@ -78,8 +79,9 @@ def _bulk(part: Part, timber: Timber) -> list[Quantity]:
 
 
 def _perimeter(part: Part) -> float:
-    if isinstance(part, Strip):
-        pattern = flat_pattern(part)
+    shape, form = shaped(part)
+    if shape is SHEET:
+        pattern = flat_pattern(form)
         cuts = _polyline_length(pattern.lower) + _polyline_length(pattern.upper)
         return pattern.left_length + pattern.right_length + cuts
     length, width, _thickness = sizes(part)
@@ -95,9 +97,9 @@ def base_quantities(part: Part, timber: Timber) -> list[Quantity]:
 
     Plates are measured in their flat pattern; their width is the thickness, as the standard has it.
     """
-    entity = IFC_KINDS[type(part)].entity
+    entity = kind_of(part).ifc.entity
     length, width, thickness = (round(size, 3) for size in sizes(part))
-    if isinstance(part, Footing):
+    if entity == "IfcFooting":
         return [
             ("Length", "IfcQuantityLength", length),
             ("Width", "IfcQuantityLength", width),
@@ -129,7 +131,7 @@ def write_product_sets(
     for name, rows in property_sets(first, model.schema).items():
         write_property_set(model, name, key, rows, related)
     if quantities := base_quantities(first, timber):
-        write_quantities(model, _QUANTITIES[IFC_KINDS[type(first)].entity], key, quantities, related)
+        write_quantities(model, _QUANTITIES[kind_of(first).ifc.entity], key, quantities, related)
 
 
 def write_serial_numbers(

@@ -1,14 +1,17 @@
 """Type objects of the products in IFC, each with the shape that all its occurrences share."""
 
-from collections.abc import Iterable, Mapping
+from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from aag_cad.export.ifc.bodies import representation_maps, surface_style
 from aag_cad.export.ifc.frame import Entity, IfcModel, declare, rooted
-from aag_cad.export.ifc.kinds import IFC_KINDS, colour_name
 from aag_cad.export.ifc.schemas import type_entity, type_word
-from aag_cad.parts.model import Bolt, Part, Rod, Screw
-from aag_cad.parts.products import product_key, product_name
+from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import colour_name, kind_of
+from aag_cad.parts.model import Gridshell, Part
+from aag_cad.parts.products import product_name
+from aag_cad.parts.quantities import sizes
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,29 +24,23 @@ class Product:
     parts: tuple[Part, ...]
 
 
-def _by_product(parts: Iterable[Part]) -> dict[str, list[Part]]:
-    groups: dict[str, list[Part]] = {}
-    for part in parts:
-        groups.setdefault(product_key(part), []).append(part)
-    return groups
-
-
 def _type_object(model: IfcModel, key: str, part: Part, maps: list[Entity]) -> Entity:
-    kind = IFC_KINDS[type(part)]
-    nominal = (
-        {"NominalDiameter": part.diameter, "NominalLength": part.length} if isinstance(part, Bolt | Screw | Rod) else {}
-    )
+    kind, (length, width, _thickness) = kind_of(part).ifc, sizes(part)
+    threaded = kind.entity == "IfcMechanicalFastener"
+    nominal = {"NominalDiameter": width, "NominalLength": length} if threaded else {}
     return rooted(
         model, type_entity(model.schema, kind), ("type", key), product_name(part),
         RepresentationMaps=maps, ElementType=type_word(model.schema, kind), PredefinedType=kind.predefined, **nominal,
     )  # fmt: skip
 
 
-def products(model: IfcModel, parts: Iterable[Part]) -> list[Product]:
+def products(model: IfcModel, gridshell: Gridshell) -> list[Product]:
     """Write one type object for every product and return them in the order of their first parts."""
     styles: dict[str, Entity] = {}
-    found = []
-    for key, members in _by_product(parts).items():
+    found, index, groups = [], index_of(gridshell), defaultdict[str, list[Part]](list)
+    for mark, key in index.keys.items():
+        groups[key].append(index.parts[mark])
+    for key, members in groups.items():
         first = members[0]
         name = colour_name(first)
         if name not in styles:

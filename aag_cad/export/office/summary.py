@@ -15,8 +15,9 @@ from aag_cad.mechanics.checks.supports import footing_checks
 from aag_cad.model import Model
 from aag_cad.network.extent import ShellExtent
 from aag_cad.parts.blades import ridge_gaps
+from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.model import Gridshell, all_parts, shell_parts
-from aag_cad.parts.quantities import kind, mass, material
+from aag_cad.parts.quantities import mass
 from aag_cad.shop.purchases import Purchases, stock_summary
 from aag_cad.shop.weights import PAPER_ROOF_KG_PER_M2, PAPER_ROOF_M2, roof_weight, shell_weights
 from aag_cad.units import MM2_PER_M2, deg_per_m
@@ -27,7 +28,7 @@ from assembly.base.steps import Plan
 def counts(gridshell: Gridshell) -> dict[str, int]:
     """Return how many parts of each kind there are, and of shells, beams and joints."""
     families = Counter(plank.family for shell in gridshell.shells for plank in shell.planks)
-    kinds = Counter(kind(part) for part in all_parts(gridshell))
+    kinds = Counter(kind_of(part).name for part in all_parts(gridshell))
     return {
         "shells": len(gridshell.shells),
         "coupled beams": sum(len(shell.beams) for shell in gridshell.shells),
@@ -43,9 +44,9 @@ def masses_per_shell(gridshell: Gridshell) -> dict[str, dict[str, float]]:
     for shell in gridshell.shells:
         kilograms: Counter[str] = Counter()
         for part in shell_parts(shell):
-            amount = mass(part, gridshell.timber)
-            kilograms[f"{kind(part)}s"] += amount  # type: ignore[assignment]
-            kilograms[f"all {material(part)}"] += amount  # type: ignore[assignment]
+            row, amount = kind_of(part), mass(part, gridshell.timber)
+            kilograms[f"{row.name}s"] += amount  # type: ignore[assignment]
+            kilograms[f"all {row.material}"] += amount  # type: ignore[assignment]
         table[shell.mark] = {name: round(float(kilograms[name]), 2) for name in sorted(kilograms)}
     return table
 

@@ -6,10 +6,11 @@ from collections.abc import Iterable
 
 from aag_cad.files import csv_text, write_text
 from aag_cad.mechanics.checks.lamella import lamella_stress
+from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.model import Gridshell, Part, Plank, Timber, all_parts
 from aag_cad.parts.products import product_name
-from aag_cad.parts.quantities import hole_count, kind, largest_twist, mass, material_name, sizes, smallest_radius
+from aag_cad.parts.quantities import hole_count, largest_twist, mass, material_name, sizes, smallest_radius
 from aag_cad.units import deg_per_m
 from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Segmentation
@@ -40,7 +41,7 @@ def part_row(part: Part, gridshell: Gridshell) -> tuple[str, ...]:
     length, width, thickness = sizes(part)
     return (
         part.mark,
-        kind(part),
+        kind_of(part).name,
         product_name(part),
         parse_mark(part.mark).family,
         shell_of(part.mark),

@@ -28,12 +28,13 @@ from aag_cad.export.workshop.dxf import dxf_bytes
 from aag_cad.files import csv_text, write_bytes, write_text
 from aag_cad.network.model import CurveId
 from aag_cad.parts.facade import strip_neighbours
+from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.marks import parse_mark, short_mark
 from aag_cad.parts.members import curve_mark
-from aag_cad.parts.model import ClampingBar, Gridshell, Mullion, Strip
+from aag_cad.parts.model import FlatBar, Gridshell, Strip
 from aag_cad.parts.products import product_key
-from aag_cad.parts.quantities import kind, mass, smallest_radius
-from aag_cad.parts.strips import FlatPattern, chord_offsets, flat_pattern, sheet_radius
+from aag_cad.parts.quantities import mass, smallest_radius
+from aag_cad.parts.shapes.sheet import FlatPattern, chord_offsets, flat_pattern, sheet_radius
 from aag_cad.units import MM2_PER_M2, Floats
 from assembly.base.mark_ranges import joined_ranges
 
@@ -251,12 +252,12 @@ def _strip_row(pattern: StripPattern, design: Design) -> tuple[str, ...]:
     )
 
 
-def _bar_row(bars: Sequence[Mullion | ClampingBar], gridshell: Gridshell) -> tuple[str, ...]:
+def _bar_row(bars: Sequence[FlatBar], gridshell: Gridshell) -> tuple[str, ...]:
     bar = bars[0]
     blank, radius = bar.blank, smallest_radius(bar)
     return (
         short_mark(bar.mark),
-        kind(bar),
+        kind_of(bar).name,
         str(len(bars)),
         joined_ranges([other.mark for other in bars]),
         "",
@@ -271,8 +272,8 @@ def _bar_row(bars: Sequence[Mullion | ClampingBar], gridshell: Gridshell) -> tup
     )
 
 
-def _bar_products(bars: Iterable[Mullion | ClampingBar]) -> list[list[Mullion | ClampingBar]]:
-    products: dict[str, list[Mullion | ClampingBar]] = defaultdict(list)
+def _bar_products(bars: Iterable[FlatBar]) -> list[list[FlatBar]]:
+    products: dict[str, list[FlatBar]] = defaultdict(list)
     for bar in bars:
         products[product_key(bar)].append(bar)
     return list(products.values())

@@ -6,9 +6,9 @@ from itertools import pairwise
 from aag_cad.design import Design
 from aag_cad.findings import Finding
 from aag_cad.parts.facade import FREE_END
-from aag_cad.parts.model import ClampingBar, Gridshell, Mullion, Shell
+from aag_cad.parts.model import FlatBar, Gridshell, Shell
 from aag_cad.parts.quantities import smallest_radius
-from aag_cad.parts.strips import flat_pattern, sheet_radius
+from aag_cad.parts.shapes.sheet import flat_pattern, sheet_radius
 from aag_cad.units import MM_PER_M
 
 # Cold bending along the ribs: makers of multiwall polycarbonate ask for 150 t, a few for 175 t.
@@ -80,7 +80,7 @@ def bar_checks(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     """
     facade = design.facade
     for shell in _covered(gridshell):
-        bars: tuple[Mullion | ClampingBar, ...] = (*shell.mullions, *shell.clamps)
+        bars: tuple[FlatBar, ...] = (*shell.mullions, *shell.clamps)
         for bar in bars:
             blank = bar.blank
             stress = ALUMINIUM_MODULUS * blank.section.thickness / 2.0 / smallest_radius(bar)

@@ -1,4 +1,4 @@
-"""Folded steel plates: their mesh, volume, holes and depth in the coordinates of their frame."""
+"""Folded plates of steel, mitred at their folds."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -6,8 +6,33 @@ from itertools import pairwise
 import numpy as np
 
 from aag_cad.geometry.surface import dot, unit
-from aag_cad.parts.model import FoldedPlate
+from aag_cad.parts.shapes.shape import Shape
+from aag_cad.parts.triangles import tube
 from aag_cad.units import Floats
+
+_POINT_SPACING = 4.0
+
+
+@dataclass(frozen=True)
+class PlateHole:
+    """A round hole through a folded plate: station along its line, offset across it, diameter, mm."""
+
+    station: float
+    offset: float
+    diameter: float
+
+
+@dataclass(frozen=True)
+class FoldedPlate:
+    """A steel plate folded along parallel lines: its centre line (x, z) in the plane y = 0 of its frame; width along y.
+
+    ``line`` is a polyline; a hole is square to the leg that it lies in.
+    """
+
+    line: tuple[tuple[float, float], ...]
+    width: float
+    thickness: float
+    holes: tuple[PlateHole, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +70,13 @@ def plate_rings(plate: FoldedPlate) -> Floats:
     return np.stack([lower - across, lower + across, upper + across, upper - across], axis=1)
 
 
+def _gross(plate: FoldedPlate) -> float:
+    """Return section x length: mitred folds keep it."""
+    return plate.width * plate.thickness * developed_length(plate)
+
+
 def plate_volume(plate: FoldedPlate) -> float:
-    """Return the volume less the holes, mm3; mitred folds keep section x length."""
+    """Return the volume less the holes, mm3."""
     bored = sum(np.pi / 4.0 * hole.diameter**2 for hole in plate.holes)
     return float(plate.thickness * (developed_length(plate) * plate.width - bored))
 
@@ -89,3 +119,16 @@ def leg_points(plate: FoldedPlate, spacing: float) -> Floats:
             a, b = ((1.0 - share) * side[0] + share * side[1] for side in (left, right))
             points.append((a[:, None] + v * (b - a)[:, None]).reshape(-1, 3))
     return np.concatenate(points)
+
+
+FOLDED_PLATE = Shape[FoldedPlate](
+    name="folded plate",
+    sizes=lambda plate: (developed_length(plate), plate.width, plate.thickness),
+    section=lambda plate: plate.width * plate.thickness,
+    gross_volume=_gross,
+    volume=plate_volume,
+    mesh=lambda plate: tube(plate_rings(plate)),
+    points=lambda plate: leg_points(plate, _POINT_SPACING),
+    depths=plate_depth,
+    holes=lambda plate: plate.holes,
+)

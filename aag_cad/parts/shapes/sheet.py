@@ -1,4 +1,4 @@
-"""The geometry of a strip: the formed sheet, its flat pattern, its mesh, and how deep points lie inside it."""
+"""Sheets bent along straight rulings: the formed sheet, its flat pattern, its mesh, and how deep points lie in it."""
 
 import math
 from collections.abc import Callable
@@ -12,11 +12,13 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from aag_cad.geometry.surface import dot, unit
 from aag_cad.parts.model import Strip
+from aag_cad.parts.shapes.shape import Shape
 from aag_cad.parts.triangles import Mesh, tube
 from aag_cad.units import Floats
 
 OUTLINE_SPACING = 25.0
 MESH_SPACING = 60.0
+_FACE_SPACING, _EDGE_SPACING = 30.0, 12.0
 _DEGREE = 5
 _FINE_PER_SAMPLE = 8
 _ON_CUT = 1e-6
@@ -357,7 +359,7 @@ def _near_depth(sheet: Sheet, points: Floats, guess: Floats) -> Floats:
     return np.where(np.abs(ahead) > 1e-3, np.minimum(depth, -np.abs(ahead)), depth)
 
 
-def strip_points(strip: Strip, face_spacing: float, edge_spacing: float) -> Floats:
+def strip_points(strip: Strip, face_spacing: float = _FACE_SPACING, edge_spacing: float = _EDGE_SPACING) -> Floats:
     """Return points on the surface of a formed strip, (n, 3): on both faces, and closer along its edges and cuts."""
     sheet, half = sheet_of(strip), strip.thickness / 2.0
     rulings = _levels(strip, face_spacing)
@@ -372,3 +374,16 @@ def strip_points(strip: Strip, face_spacing: float, edge_spacing: float) -> Floa
         v.append(ruling_spans(sheet, close)[:, side])
     every_u, every_v = np.concatenate(u), np.concatenate(v)
     return np.concatenate([sheet.formed(every_u, every_v, height) for height in (-half, half)])
+
+
+SHEET = Shape[Strip](
+    name="sheet",
+    sizes=strip_sizes,
+    section=lambda strip: strip_sizes(strip)[1] * strip.thickness,
+    gross_volume=strip_volume,
+    volume=strip_volume,
+    mesh=strip_mesh,
+    points=strip_points,
+    depths=strip_depth,
+    lines=lambda strip: (strip.left, strip.right),
+)

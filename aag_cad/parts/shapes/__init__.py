@@ -1,0 +1,1 @@
+"""The six shapes that parts have: bar, prism, box, threaded, folded plate and sheet."""
