@@ -226,7 +226,7 @@ def plan(
     from aag_cad.findings import finding_row
     from aag_cad.language import language_of
     from aag_cad.planning import STAGES, explained, planned_source, read_source, write_plan
-    from assembly.plan.assembly_plan import plan_json
+    from assembly.booklet.plan_file import plan_json
     from assembly.transport.search import limits_from
 
     printed, limits = language_of(lang), limits_from(transport) if transport else None
@@ -238,10 +238,10 @@ def plan(
         folder = output or Path(read.name)
         files = {} if explain else write_plan(result, folder, report)
     if explain:
-        print("\n".join(explained(result, explain)))
+        print("\n".join(explained(result, explain, printed)))
         return
     if as_json:
-        print(plan_json(result.plan), end="")
+        print(plan_json(result.file()), end="")
     else:
         console = Console()
         days = result.schedule.days

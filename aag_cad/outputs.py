@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from aag_cad.errors import DesignError
 from aag_cad.export.ifc.options import IfcOptions
+from aag_cad.language import Language
 from aag_cad.model import Model
 from aag_cad.network.polylines import polylines_json
 from aag_cad.shop.purchases import Purchases
@@ -27,6 +28,7 @@ class Dossier:
     planned: "Planned"
     purchases: Purchases
     ifc: IfcOptions
+    language: Language = "en"
 
 
 Writer: TypeAlias = Callable[[Dossier, Path], None]
@@ -47,13 +49,14 @@ def _write_step(dossier: Dossier, folder: Path) -> None:
 
 def _write_ifc(dossier: Dossier, folder: Path) -> None:
     from aag_cad.export.ifc.model import write_ifc
+    from aag_cad.export.ifc.schedule import PlannedWork
 
     gridshell, design = dossier.model.gridshell, dossier.model.design
     project = design.project
-    options = replace(
-        dossier.ifc, site=design.site, author=project.author, organisation=project.organisation, crew=design.crew
-    )
-    write_ifc(gridshell, folder / f"{gridshell.name}.ifc", dossier.planned.plan.steps, options)
+    options = replace(dossier.ifc, site=design.site, author=project.author, organisation=project.organisation)
+    planned = dossier.planned
+    work = PlannedWork(planned.plan, planned.schedule, design.crew, planned.segmentation)
+    write_ifc(gridshell, folder / f"{gridshell.name}.ifc", work, options)
 
 
 def _write_glb(dossier: Dossier, folder: Path) -> None:
@@ -124,7 +127,9 @@ def _plan_writer(name: str) -> Writer:
     def write(dossier: Dossier, folder: Path) -> None:
         from aag_cad.export.office.plan_files import PLAN_WRITERS, Planning
 
-        PLAN_WRITERS[name](Planning(dossier.planned, dossier.model.gridshell, dossier.model.design.crew), folder)
+        model = dossier.model
+        planning = Planning(dossier.planned, model.gridshell, model.design.crew, dossier.language)
+        PLAN_WRITERS[name](planning, folder)
 
     return write
 

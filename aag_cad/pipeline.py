@@ -210,9 +210,9 @@ def build(
         begin("audit")
         checked = audit(design, model.gridshell, purchases)
         begin("assembly")
-        planned = planned_of(model.gridshell, design.crew, limits_of(design.transport), printed)
+        planned = planned_of(model.gridshell, design.crew, limits_of(design.transport))
         findings = worst_first([*checked, *planned.plan.findings])
-        dossier = Dossier(model, planned, purchases, ifc_options)
+        dossier = Dossier(model, planned, purchases, ifc_options, printed)
         for output in outputs:
             begin(output)
             EVERY_OUTPUT[output](dossier, staging)

@@ -14,13 +14,14 @@ from aag_cad.errors import DesignError, FileError
 from aag_cad.export.office.plan_files import PLAN_WRITERS, Planning, write_graph_groups, write_graph_plan
 from aag_cad.files import publishing, read_text, sizes_below
 from aag_cad.findings import Finding, worst_first
-from aag_cad.language import Language
+from aag_cad.language import Language, printed
 from aag_cad.parts.model import Gridshell
 from aag_cad.parts.store import read_gridshell
 from aag_cad.pipeline import Report, gridshell_of
 from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Limits
 from assembly.base.steps import Plan
+from assembly.booklet.plan_file import PlanFile, graph_pieces, gridshell_pieces, plan_file
 from assembly.graph.files import graph_text, read_graph, shipped_graphs
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.plan.explain import explanation
@@ -46,12 +47,13 @@ class Source:
 
 @dataclass(frozen=True)
 class Result:
-    """What was planned: plan, schedule, locking orders, the graph's maker, and what writes the files."""
+    """What was planned: plan, schedule, locking orders; what makes the graph and plan.json, and writes the files."""
 
     plan: Plan
     schedule: Schedule
     locking: tuple[LockingOrder, ...]
     graph: Callable[[], "nx.MultiGraph[str]"]
+    file: Callable[[], PlanFile]
     writers: dict[str, Callable[[Path], None]]
 
     @property
@@ -106,25 +108,33 @@ def planned_source(source: Source, language: Language = "en", edges_first: bool 
     crew = source.crew
     if source.gridshell is not None:
         gridshell = source.gridshell
-        planned = planned_of(gridshell, crew, source.limits, language, edges_first=edges_first)
-        planning = Planning(planned, gridshell, crew)
+        planned = planned_of(gridshell, crew, source.limits, edges_first=edges_first)
+        planning = Planning(planned, gridshell, crew, language)
         return Result(
             planned.plan,
             planned.schedule,
             planned.locking,
             lambda: assembly_graph(gridshell),
+            lambda: plan_file(planned.plan, planned.schedule, crew, gridshell_pieces(gridshell), planned.segmentation),
             {name: _bound(writer, planning) for name, writer in PLAN_WRITERS.items()},
         )
     assert source.graph is not None
     graph = source.graph
-    plan = graph_plan(graph, crew.people, crew.lift_limit, language)
+    plan = graph_plan(graph, crew.people, crew.lift_limit)
     schedule = schedule_of(plan, graph_durations(plan, graph, crew.minutes), crew.people, crew.hours_per_day)
     writers: dict[str, Callable[[Path], None]] = {
-        "files": lambda folder: write_graph_plan(graph, plan, schedule, crew, folder)
+        "files": lambda folder: write_graph_plan(graph, plan, schedule, crew, folder, language)
     }
     if source.limits != NO_LIMITS:
         writers["segments"] = lambda folder: write_graph_groups(graph, source.limits, folder)
-    return Result(plan, schedule, (), lambda: graph, writers)
+    return Result(
+        plan,
+        schedule,
+        (),
+        lambda: graph,
+        lambda: plan_file(plan, schedule, crew, graph_pieces(graph)),
+        writers,
+    )
 
 
 def _bound(writer: Callable[[Planning, Path], None], planning: Planning) -> Callable[[Path], None]:
@@ -140,6 +150,7 @@ def write_plan(result: Result, folder: Path, report: Report = lambda stage: None
         return sizes_below(staging)
 
 
-def explained(result: Result, mark: str) -> list[str]:
+def explained(result: Result, mark: str, language: Language = "en") -> list[str]:
     """Return why a part or beam comes when it does, one line each; PlanError if nothing has the mark."""
-    return explanation(result.graph(), result.plan, mark, result.schedule, result.locking)
+    lines = explanation(result.graph(), result.plan, mark, result.schedule, result.locking)
+    return [printed(line, language) for line in lines]

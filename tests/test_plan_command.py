@@ -13,10 +13,10 @@ from aag_cad.design import design_text, parse_design
 from aag_cad.files import write_text
 from aag_cad.parts.store import gridshell_json
 from aag_cad.pipeline import gridshell_of
+from assembly.booklet.plan_file import read_plan
 from assembly.checks.graph_plan import check_graph_plan
 from assembly.checks.plan import check_plan
 from assembly.graph.files import graph_text, read_graph, read_graphml
-from assembly.plan.assembly_plan import read_plan
 
 AAG = [sys.executable, "-m", "aag_cad", "plan"]
 SMALL = (("geodesics = 14 ", "geodesics = 6 "), ("sector_deg = 60.0", "sector_deg = 50.0"))

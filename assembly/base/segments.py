@@ -189,3 +189,16 @@ def segments_of(segmentation: Segmentation | None, shell: str) -> tuple[Segment,
     """Return the segments of a shell from the first geodesic to the last; none if it travels whole."""
     own = tuple(segment for segment in segmentation.segments if segment.shell == shell) if segmentation else ()
     return own if len(own) > 1 else ()
+
+
+def splices_of(plan: Segmentation, segment: Segment) -> tuple[tuple[Splice, ...], tuple[Splice, ...]]:
+    """Return the splices of a segment: those along its own geodesics, and those along its neighbours'."""
+    planks = {piece.plank for piece in segment.pieces}
+    cut = [s for s in plan.splices if any(c.plank in planks and _touches(segment, c.plank, c.station) for c in s.cuts)]
+    own = set(segment.geodesics)
+    return tuple(s for s in cut if s.line in own), tuple(s for s in cut if s.line not in own)
+
+
+def _touches(segment: Segment, plank: str, station: float) -> bool:
+    """Return whether a segment has the piece of a plank on one side of a cut."""
+    return any(piece.plank == plank and station in (piece.start, piece.end) for piece in segment.pieces)

@@ -15,8 +15,9 @@ from aag_cad.parts.model import Bolt, Gridshell, Part, Plank, Rod, Screw, Shell,
 from assembly.base.mark_ranges import joined_ranges, mark_ranges
 from assembly.base.names import part_name, phase_name
 from assembly.base.part_groups import driven_from_outside
-from assembly.base.steps import PHASES, Plan, Step
-from assembly.plan.assembly_plan import lifted
+from assembly.base.phases import PHASE, PHASES
+from assembly.base.steps import Plan, Step, carried
+from assembly.booklet.step_words import step_title, step_words
 from assembly.plan.shape_control import control_figures, sling_points
 
 __all__ = ["part_rows", "phase_name", "qr_text", "step_card", "step_table", "totals"]
@@ -25,9 +26,6 @@ Weights = Mapping[str, tuple[float, float]]
 
 _WORTH_SAYING = 1.0
 _TIGHTENED = ("AA", "AG", "boundary", "ridge")
-_STAYING = ("prop", "open ridges")
-# Their tables list the parts.
-_TABLED = ("lay A1", "lay G", "lay A2", "lay", "slide", "take off geodesics")
 # A square code of the size on the card stays readable for a telephone up to here.
 _QR_CHARACTERS = 300
 
@@ -86,8 +84,7 @@ def _beam_table(shell: Shell, step: Step, weights: Weights, language: Language) 
     return _table(language, "beams", rows)
 
 
-def _laid_table(step: Step, weights: Weights, plan: Plan) -> dict[str, Any]:
-    language = plan.language
+def _laid_table(step: Step, weights: Weights, plan: Plan, language: Language) -> dict[str, Any]:
     made = {whole_of(mark): s.number for s in plan.steps if s.phase == "prefabricate" for mark in s.marks}
     rows = []
     for unit in (*step.assemblies, *step.marks):
@@ -136,29 +133,31 @@ def _bolt_table(shell: Shell, language: Language) -> dict[str, Any]:
     return _table(language, "bolts", [[where, name, str(n)] for (name, where), n in groups.items()])
 
 
-def step_table(gridshell: Gridshell, plan: Plan, step: Step, weights: Weights) -> dict[str, Any] | None:
+def step_table(
+    gridshell: Gridshell, plan: Plan, step: Step, weights: Weights, language: Language = "en"
+) -> dict[str, Any] | None:
     """Return the table of a step's card as head and rows of text, or None."""
-    shells, language = index_of(gridshell).shells, plan.language
-    match step.phase:
-        case "prefabricate":
+    shells = index_of(gridshell).shells
+    match PHASE[step.phase].table:
+        case "beams":
             return _beam_table(shells[step.shell], step, weights, language)
-        case "lay A1" | "lay G" | "lay A2" | "lay" | "slide":
-            return _laid_table(step, weights, plan)
-        case "hoist":
+        case "laid":
+            return _laid_table(step, weights, plan, language)
+        case "control":
             return _control_table(shells[step.shell], language)
-        case "tighten":
+        case "bolts":
             return _bolt_table(shells[step.shell], language)
         case "feet":
             return _feet_table(gridshell, language)
-        case "lift off" | "hang":
+        case "slings":
             points = sling_points(shells[step.assemblies[0]])
             return _table(language, "slings", [["H", short_mark(mark)] for mark in points])
-        case "take off beams" | "take off geodesics":
+        case "taken":
             return _taken_table(step, weights, language)
-        case "passports":
+        case "measured":
             parts = index_of(shells[step.shell]).parts
             return _table(language, "measured", part_rows(parts, step.assemblies, language=language))
-        case _:
+        case "":
             return None
 
 
@@ -186,13 +185,18 @@ def gathered(extras: Sequence[str]) -> list[str]:
 
 
 def step_card(
-    gridshell: Gridshell, plan: Plan, step: Step, parts: Mapping[str, Part], weights: Weights
+    gridshell: Gridshell,
+    plan: Plan,
+    step: Step,
+    parts: Mapping[str, Part],
+    weights: Weights,
+    language: Language = "en",
 ) -> dict[str, Any]:
     """Return what the card of a step of putting together or of taking down prints, without its pictures."""
-    language = plan.language
-    titles = {s.id: f"{s.number}  {s.title}" for s in plan.steps}
+    words = step_words(step, language)
+    titles = {s.id: f"{s.number}  {step_title(s, language)}" for s in plan.steps}
     chapter = [s for s in plan.steps if s.shell == step.shell]
-    moved = step.marks if step.phase in _STAYING else lifted(step, weights)
+    moved = carried(step.phase, step.marks, step.assemblies, step.segments)
     heaviest = max((mark for mark in moved if mark in weights), key=lambda mark: (weights[mark][0], mark), default="")
     told = bool(heaviest) and weights[heaviest][0] >= _WORTH_SAYING
     worked_on = {step.shell, *(shell_of(mark) for mark in step.marks)}
@@ -203,20 +207,20 @@ def step_card(
         "id": step.id,
         "phase": step.phase,
         "phases": [[phase_name(p, language), p == step.phase] for p in PHASES if any(s.phase == p for s in chapter)],
-        "title": step.title,
+        "title": words.title,
         "shell": step.shell,
-        "parts": [] if step.phase in _TABLED else part_rows(parts, step.marks, outer, language),
+        "parts": [] if PHASE[step.phase].listed else part_rows(parts, step.marks, outer, language),
         "pieces": len(step.marks),
         "added": _mass(added, language) if step.marks else "",
         "heaviest": f"{heaviest}: {_mass(weights[heaviest][0], language)}" if told else "",
-        "table": step_table(gridshell, plan, step, weights),
-        "tools": list(step.tools),
+        "table": step_table(gridshell, plan, step, weights, language),
+        "tools": list(words.tools),
         "crew": step.crew,
         "after": [titles[before] for before in step.predecessors],
-        "instructions": list(step.instructions),
-        "hold": step.hold,
-        "props": [short_mark(mark) if step.shell else mark for mark in step.props],
-        "extras": gathered(step.extras),
+        "instructions": list(words.instructions),
+        "hold": words.hold,
+        "props": [short_mark(mark) if step.shell else mark for mark in step.propped],
+        "extras": gathered(words.extras),
         "qr": qr_text(plan.name, step, weights),
     }
 

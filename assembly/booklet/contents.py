@@ -15,13 +15,14 @@ from assembly.booklet.cards import Weights, step_card, totals
 from assembly.booklet.gantt import gantt_svg
 from assembly.booklet.qr import qr_svg
 from assembly.booklet.sheets import Made, laying_sheets, locking_sheets, map_sheets, segment_sheets
+from assembly.booklet.step_words import step_title
 from assembly.booklet.words import booklet_words, finding_lines
 from assembly.drawing.joint_sections import block_section_svg, node_section_svg
 from assembly.drawing.perspective import perspective_svg
 from assembly.pictures.backgrounds import Sheets, sheets_of, shell_twins
 from assembly.pictures.scenes import home_shell, legend_svgs, phase_svg, picture_key, step_pictures
 from assembly.pictures.site_scenes import key_svg
-from assembly.plan.assembly_plan import piece_weights, segment_weights
+from assembly.plan.piece_weights import piece_weights, segment_weights
 from assembly.plan.planned import Planned
 from assembly.plan.schedule import Schedule
 
@@ -46,11 +47,12 @@ class Common:
     weights: Weights
     pictures: dict[str, str]
     maps: dict[str, Any]
+    language: Language
 
 
-def _sheet_words(kind: Kind, plan: Plan) -> dict[str, Any]:
+def _sheet_words(kind: Kind, language: Language) -> dict[str, Any]:
     """Return the words that depend on the kind of booklet."""
-    words = booklet_words(plan.language)
+    words = booklet_words(language)
     side = "up" if kind == "sequence" else "down"
     card = words["card"]
     return words | {
@@ -69,17 +71,17 @@ def _days(schedule: Schedule) -> int:
 def _cover(words: Mapping[str, Any], plan: Plan, schedule: Schedule, common: Common) -> dict[str, Any]:
     people = max((step.crew for step in plan.steps), default=0)
     told = words["cover"]["crew"].format(steps=len(plan.steps), people=people, days=_days(schedule))
-    return {"picture": "vault", "totals": totals(common.gridshell, common.weights, plan.language), "told": told}
+    return {"picture": "vault", "totals": totals(common.gridshell, common.weights, common.language), "told": told}
 
 
-def _listing(words: Mapping[str, Any], plan: Plan) -> list[dict[str, Any]]:
+def _listing(words: Mapping[str, Any], plan: Plan, language: Language) -> list[dict[str, Any]]:
     """Return the steps by chapter: those of each shell and those on site, in the order of the plan."""
     names = dict.fromkeys(step.shell for step in plan.steps)
     return [
         {
             "name": words["list"]["shell"].format(shell=name) if name else words["list"]["site"],
             "steps": [
-                {"number": step.number, "title": step.title, "crew": step.crew, "hold": bool(step.hold)}
+                {"number": step.number, "title": step_title(step, language), "crew": step.crew, "hold": step.held}
                 for step in plan.steps
                 if step.shell == name
             ],
@@ -99,7 +101,7 @@ def _caption(step: Step) -> str:
         parse_mark(mark).family == "R" for mark in step.marks
     ):
         return f"{step.phase} alone"
-    if step.phase == "stand" and step.id != f"site.stand.{step.assemblies[0]}":
+    if step.phase == "stand" and step.segments:
         return "stand segment"
     return step.phase
 
@@ -126,7 +128,7 @@ def _cards(
     gridshell, drawn = sheets.gridshell, dict[tuple[object, ...], list[str]]()
     parts = index_of(gridshell).parts
     for step in plan.steps:
-        card = step_card(gridshell, plan, step, parts, common.weights)
+        card = step_card(gridshell, plan, step, parts, common.weights, common.language)
         key = picture_key(sheets, step)
         if key not in drawn:
             made = {f"step-{step.number}-{i}": picture for i, picture in enumerate(step_pictures(sheets, step))}
@@ -150,7 +152,7 @@ def common_of(gridshell: Gridshell, language: Language) -> Common:
     keys = {f"key-{shell.mark}": key_svg(gridshell, shell.mark) for shell in gridshell.shells}
     pictures = {"vault": perspective_svg(gridshell)} | swatches | keys
     maps, drawn = map_sheets(gridshell, shell_twins(gridshell), language)
-    return Common(gridshell, piece_weights(gridshell), pictures | drawn, maps)
+    return Common(gridshell, piece_weights(gridshell), pictures | drawn, maps, language)
 
 
 def _booklet(kind: Kind, planned: Planned, common: Common) -> tuple[Booklet, Sheets]:
@@ -160,16 +162,21 @@ def _booklet(kind: Kind, planned: Planned, common: Common) -> tuple[Booklet, She
     gridshell, pictures = common.gridshell, dict(common.pictures)
     common = replace(common, weights={**common.weights, **segment_weights(gridshell, planned.segmentation)})
     slides = [slide for order in planned.orders.values() for slide in order.slides]
-    words, sheets = _sheet_words(kind, plan), sheets_of(plan, gridshell, planned.segmentation, slides)
-    pictures["schedule"] = gantt_svg(plan, schedule, f"{gridshell.title}: {words['schedule']['title']}")
+    words, sheets = (
+        _sheet_words(kind, common.language),
+        sheets_of(plan, gridshell, planned.segmentation, slides, common.language),
+    )
+    pictures["schedule"] = gantt_svg(
+        plan, schedule, f"{gridshell.title}: {words['schedule']['title']}", common.language
+    )
     data = {
         "kind": kind,
-        "language": plan.language,
+        "language": common.language,
         "title": gridshell.title,
         "name": gridshell.name,
         "words": words,
         "cover": _cover(words, plan, schedule, common),
-        "chapters": _listing(words, plan),
+        "chapters": _listing(words, plan, common.language),
         "schedule": "schedule",
         "cards": list(_cards(kind, words, plan, sheets, common, pictures)),
         "phases": [],
@@ -177,7 +184,7 @@ def _booklet(kind: Kind, planned: Planned, common: Common) -> tuple[Booklet, She
         "layings": [],
         "lockings": [],
         "segments": [],
-        "findings": finding_lines(worst_first(plan.findings), plan.language),
+        "findings": finding_lines(worst_first(plan.findings), common.language),
         **common.maps,
     }
     return Booklet(data, pictures), sheets
@@ -195,23 +202,23 @@ def _how(words: Mapping[str, Any], plan: Plan, sheets: Sheets, cards: Sequence[M
     ]
     sections = {}
     if first.studs:
-        sections["node"] = node_section_svg(first, language=plan.language)
+        sections["node"] = node_section_svg(first, language=sheets.language)
     if first.blocks and first.screws:
-        sections["block"] = block_section_svg(first, language=plan.language)
+        sections["block"] = block_section_svg(first, language=sheets.language)
     return {"phases": phases, "sections": list(sections)}, pictures | sections
 
 
 def sequence_booklet(planned: Planned, common: Common) -> Booklet:
-    """Return the booklet of putting together, in the language of its plan."""
+    """Return the booklet of putting together, in the language of ``common``."""
     plan, gridshell = planned.plan, common.gridshell
     booklet, sheets = _booklet("sequence", planned, common)
     words, cards = booklet.data["words"], booklet.data["cards"]
     data, pictures = dict(booklet.data), dict(booklet.pictures)
     for more, drawn in (
         _how(words, plan, sheets, cards),
-        laying_sheets(gridshell, planned, sheets.twins),
-        locking_sheets(planned.locking, sheets.twins, plan.language),
-        segment_sheets(gridshell, planned.segmentation, plan.language),
+        laying_sheets(gridshell, planned, sheets.twins, common.language),
+        locking_sheets(planned.locking, sheets.twins, common.language),
+        segment_sheets(gridshell, planned.segmentation, common.language),
     ):
         data |= more
         pictures |= drawn
@@ -219,5 +226,5 @@ def sequence_booklet(planned: Planned, common: Common) -> Booklet:
 
 
 def disassembly_booklet(planned: Planned, common: Common) -> Booklet:
-    """Return the booklet of taking down, in the language of its plan."""
+    """Return the booklet of taking down, in the language of ``common``."""
     return _booklet("disassembly", planned, common)[0]

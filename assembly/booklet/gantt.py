@@ -6,7 +6,8 @@ from math import ceil
 import numpy as np
 
 from aag_cad.language import Language, figure, say
-from assembly.base.steps import Phase, Plan, Step
+from assembly.base.phases import PHASE, Look, Phase
+from assembly.base.steps import Plan, Step
 from assembly.drawing.svg import CHARACTER, Style, group, line, number, polygon, rectangle, svg, text
 from assembly.plan.schedule import Schedule, ScheduledStep, people_curve
 
@@ -17,22 +18,12 @@ _INK, _THIN, _GRID = Style("#000"), Style("none", "#000", 1.5), Style("none", "#
 _NIGHT, _LIMIT = Style("none", "#000", 2.5), Style("none", "#000", 3.0, "14 9")
 _MOST_DAYS = 40
 
-# What is drawn alike, in the order of the legend: key of its name, paint and phases.
-_LOOKS: tuple[tuple[str, str, tuple[Phase, ...]], ...] = (
-    ("make", "white", ("prefabricate", "unbolt")),
-    ("lay", "light", ("lay A1", "lay G", "lay A2", "lay", "slide", "take off beams", "take off geodesics")),
-    ("studs", "rising", ("studs", "join", "pull studs")),
-    ("hoist", "black", ("hoist", "hang", "lower")),
-    ("edges", "crossed", ("edge planks", "pull edge planks")),
-    ("fix", "upright", ("fix geodesics", "release geodesics")),
-    ("tighten", "dotted", ("tighten",)),
-    ("splices", "netted", ("divide", "splice")),
-    ("feet", "level", ("feet", "clear feet", "prop")),
-    ("stand", "dark", ("stand", "lift off")),
-    ("ridges", "falling", ("ridges", "open ridges")),
-    ("cover", "middle", ("cover", "uncover")),
-    ("passports", "squared", ("passports",)),
-)
+# How each look of a phase is painted, in the order of the legend.
+_PAINTS: dict[Look, str] = {
+    "make": "white", "lay": "light", "studs": "rising", "hoist": "black", "edges": "crossed", "fix": "upright",
+    "tighten": "dotted", "splices": "netted", "feet": "level", "stand": "dark", "ridges": "falling", "cover": "middle",
+    "passports": "squared",
+}  # fmt: skip
 _SOLID = {"white": "#fff", "light": "#ddd", "middle": "#b0b0b0", "dark": "#666", "black": "#000"}
 _HATCHES = {
     "rising": ('<path d="M0 16L16 0M-4 4L4 -4M12 20L20 12"/>', 16),
@@ -46,9 +37,12 @@ _HATCHES = {
 }
 
 
-def _paint(phase: str) -> str:
-    look = next((paint for _, paint, phases in _LOOKS if phase in phases), "white")
-    return _SOLID.get(look, f"url(#gantt-{look})")
+def _paint(phase: Phase) -> str:
+    return _fill(_PAINTS[PHASE[phase].look])
+
+
+def _fill(paint: str) -> str:
+    return _SOLID.get(paint, f"url(#gantt-{paint})")
 
 
 def _patterns() -> str:
@@ -124,7 +118,7 @@ def _axis(schedule: Schedule, x_of: float, top: float, bottom: float, language: 
     yield group([text(say(language, "schedule.gantt.day"), _LEFT - 20.0, top - 28.0, _WORDS, "end")], _INK)
 
 
-def _lanes(plan: Plan, schedule: Schedule, x_of: float, top: float, bottom: float) -> Iterator[str]:
+def _lanes(plan: Plan, schedule: Schedule, x_of: float, top: float, bottom: float, language: Language) -> Iterator[str]:
     """Yield the lanes of the shells and of the site, their heights by how many steps go on at once."""
     when = {step.id: step for step in schedule.steps}
     shells = sorted({step.shell for step in plan.steps}, key=lambda shell: (shell == "", len(shell), shell))
@@ -137,7 +131,7 @@ def _lanes(plan: Plan, schedule: Schedule, x_of: float, top: float, bottom: floa
         yield group(
             [
                 text(
-                    shell or say(plan.language, "schedule.gantt.site"),
+                    shell or say(language, "schedule.gantt.site"),
                     _LEFT - 20.0,
                     y + tall / 2.0,
                     40.0,
@@ -186,16 +180,15 @@ def _curve(schedule: Schedule, x_of: float, top: float, bottom: float, language:
     )
 
 
-def _legend(plan: Plan, top: float) -> Iterator[str]:
+def _legend(plan: Plan, top: float, language: Language) -> Iterator[str]:
     """Yield a sample of each look that the plan has, and of the critical steps."""
-    used = {step.phase for step in plan.steps}
-    looks = [(f"looks.{name}", phases[0]) for name, _, phases in _LOOKS if used & set(phases)]
+    used = {PHASE[step.phase].look for step in plan.steps}
+    looks = [(f"looks.{look}", _fill(paint), 2.0) for look, paint in _PAINTS.items() if look in used]
     column = (_RIGHT - 60.0) / 7.0
-    for i, (name, phase) in enumerate((*looks, ("gantt.critical", ""))):
+    for i, (name, fill, frame) in enumerate((*looks, ("gantt.critical", _fill("white"), 7.0))):
         x, y = 60.0 + i % 7 * column, top + i // 7 * 60.0
-        style = Style(_paint(phase), "#000", 2.0 if phase else 7.0)
-        yield group([rectangle(x, y, 70.0, 40.0)], style)
-        yield group([text(say(plan.language, f"schedule.{name}"), x + 84.0, y + 20.0, _SMALL, "start")], _INK)
+        yield group([rectangle(x, y, 70.0, 40.0)], Style(fill, "#000", frame))
+        yield group([text(say(language, f"schedule.{name}"), x + 84.0, y + 20.0, _SMALL, "start")], _INK)
 
 
 def _heading(title: str, schedule: Schedule, language: Language) -> Iterator[str]:
@@ -216,10 +209,10 @@ def _heading(title: str, schedule: Schedule, language: Language) -> Iterator[str
     yield group([text(facts, 60.0, 160.0, _WORDS, "start")], _INK)
 
 
-def gantt_svg(plan: Plan, schedule: Schedule, title: str) -> str:
+def gantt_svg(plan: Plan, schedule: Schedule, title: str, language: Language = "en") -> str:
     """Return the Gantt chart as SVG, A4 across: steps by their numbers in lanes, thick frames where there is no slack.
 
-    Days are working days from 1; words are in the language of the plan.
+    Days are working days from 1.
     """
     span = max(1, ceil(schedule.makespan / schedule.day_minutes)) * schedule.day_minutes
     x_of = (_RIGHT - _LEFT) / span
@@ -227,10 +220,10 @@ def gantt_svg(plan: Plan, schedule: Schedule, title: str) -> str:
     curve_top, lanes_bottom = legend - _CURVE - 40.0, legend - _CURVE - 95.0
     parts: Sequence[Iterable[str]] = (
         [_patterns(), group([rectangle(0.0, 0.0, WIDTH, HEIGHT)], Style("#fff"))],
-        _heading(title, schedule, plan.language),
-        _axis(schedule, x_of, _TOP, legend - 40.0, plan.language),
-        _lanes(plan, schedule, x_of, _TOP, lanes_bottom),
-        _curve(schedule, x_of, curve_top, legend - 40.0, plan.language),
-        _legend(plan, legend),
+        _heading(title, schedule, language),
+        _axis(schedule, x_of, _TOP, legend - 40.0, language),
+        _lanes(plan, schedule, x_of, _TOP, lanes_bottom, language),
+        _curve(schedule, x_of, curve_top, legend - 40.0, language),
+        _legend(plan, legend, language),
     )
     return svg(WIDTH, HEIGHT, (item for part in parts for item in part))

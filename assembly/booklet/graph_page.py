@@ -9,6 +9,8 @@ import networkx as nx
 import numpy as np
 
 from aag_cad.units import Floats
+from aag_cad.language import Language
+from assembly.booklet.step_words import step_title, step_words
 from assembly.base.names import phase_name
 from assembly.base.steps import Plan, Step
 from assembly.booklet.contents import Booklet
@@ -89,28 +91,28 @@ def _step_svg(
     return svg(_WIDTH, height, items)
 
 
-def _card(plan: Plan, step: Step, words: Mapping[str, Any], picture: str) -> dict[str, Any]:
+def _card(plan: Plan, step: Step, words: Mapping[str, Any], picture: str, language: Language) -> dict[str, Any]:
     """Return what the section of a step says, as of a gridshell's step, with its marks in a table."""
-    titles = {other.id: f"{other.number}  {other.title}" for other in plan.steps}
-    phase = phase_name(step.phase, plan.language)
+    titles = {other.id: f"{other.number}  {step_title(other, language)}" for other in plan.steps}
+    phase, said = phase_name(step.phase, language), step_words(step, language)
     marks = ", ".join(dict.fromkeys((*step.assemblies, *step.marks)))
     return {
-        "number": step.number, "id": step.id, "title": step.title, "shell": step.shell, "phase": step.phase, "key": "",
+        "number": step.number, "id": step.id, "title": said.title, "shell": step.shell, "phase": step.phase, "key": "",
         "line": f"{phase} · ", "pictures": [picture], "caption": words["captions"].get(f"graph {step.phase}", ""),
-        "instructions": step.instructions, "table": {"head": [words["page"]["marks"]], "rows": [[marks]]}, "parts": [],
-        "extras": step.extras, "propped": ", ".join(step.props), "crew": step.crew, "tools": step.tools, "heaviest": "",
-        "after": [titles[before] for before in step.predecessors], "hold": step.hold, "added": "",
+        "instructions": said.instructions, "table": {"head": [words["page"]["marks"]], "rows": [[marks]]}, "parts": [],
+        "extras": said.extras, "propped": ", ".join(step.propped), "crew": step.crew, "tools": said.tools, "heaviest": "",
+        "after": [titles[before] for before in step.predecessors], "hold": said.hold, "added": "",
     }  # fmt: skip
 
 
-def _chapters(plan: Plan, words: Mapping[str, Any]) -> list[dict[str, Any]]:
+def _chapters(plan: Plan, words: Mapping[str, Any], language: Language) -> list[dict[str, Any]]:
     names = dict.fromkeys(step.shell for step in plan.steps)
     shell = words["list"]["shell"]
     return [
         {
             "name": shell.format(shell=name) if name else plan.name,
             "steps": [
-                {"number": step.number, "title": step.title, "hold": bool(step.hold)}
+                {"number": step.number, "title": step_title(step, language), "hold": step.held}
                 for step in plan.steps
                 if step.shell == name
             ],
@@ -119,12 +121,12 @@ def _chapters(plan: Plan, words: Mapping[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
-def graph_html(plan: Plan, schedule: Schedule, graph: "nx.MultiGraph[str]") -> str:
+def graph_html(plan: Plan, schedule: Schedule, graph: "nx.MultiGraph[str]", language: Language = "en") -> str:
     """Return the plan of a graph of parts as one HTML page without links to anything else; same plan, same text.
 
     Every section has the members in plan as lines from start to end, those of the step heavy and named.
     """
-    words, units = booklet_words(plan.language), units_of(graph)
+    words, units = booklet_words(language), units_of(graph)
     lines, height = _on_sheet(graph, units)
     slid = any(step.phase == "slide" for step in plan.steps)
     slides = _ways(interlacing(graph, later=()), units) if slid else {}
@@ -138,17 +140,17 @@ def graph_html(plan: Plan, schedule: Schedule, graph: "nx.MultiGraph[str]") -> s
     told = words["cover"]["crew"].format(steps=len(plan.steps), people=people, days=ceil(schedule.days))
     data = {
         "kind": "graph",
-        "language": plan.language,
+        "language": language,
         "title": plan.name,
         "name": plan.name,
         "words": words
         | {"foot": words["sequence_foot"], "subtitle": words["sequence"], "card": card, "read": {"lines": []}},
         "cover": {"picture": "", "told": told, "totals": None},
-        "findings": finding_lines(plan.findings, plan.language),
-        "chapters": _chapters(plan, words),
+        "findings": finding_lines(plan.findings, language),
+        "chapters": _chapters(plan, words, language),
         "schedule": "",
-        "cards": [_card(plan, step, words, f"step-{step.number}") for step in plan.steps],
+        "cards": [_card(plan, step, words, f"step-{step.number}", language) for step in plan.steps],
         **dict.fromkeys(("phases", "maps", "layings", "lockings", "segments"), ()),
     }
-    handled = ((s.number, s.title, dict.fromkeys((*s.assemblies, *s.marks))) for s in plan.steps)
+    handled = ((s.number, step_title(s, language), dict.fromkeys((*s.assemblies, *s.marks))) for s in plan.steps)
     return filled_page(Booklet(data, drawn), handled, next(iter(units), ""))

@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from aag_cad.files import write_bytes, write_text
+from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell
 from aag_cad.typesetting import printout_pdf
 from assembly.booklet.contents import Booklet, common_of, disassembly_booklet, sequence_booklet
@@ -16,12 +17,12 @@ def booklet_pdf(booklet: Booklet) -> bytes:
     return printout_pdf("sequence", booklet.data, booklet.pictures)
 
 
-def write_booklets(planned: Planned, gridshell: Gridshell, folder: Path) -> None:
+def write_booklets(planned: Planned, gridshell: Gridshell, folder: Path, language: Language = "en") -> None:
     """Write both booklets to a folder, each as PDF and as HTML page: what they share is made only once.
 
     The files are sequence.pdf, sequence.html, disassembly.pdf and disassembly.html. FileError if one cannot be written.
     """
-    common = common_of(gridshell, planned.plan.language)
+    common = common_of(gridshell, language)
     makers = (("sequence", sequence_booklet, planned.plan), ("disassembly", disassembly_booklet, planned.down))
     # Typst sets each booklet in a thread, while here its page and the next booklet are made.
     with ThreadPoolExecutor(max_workers=len(makers)) as typesetters:

@@ -8,18 +8,13 @@ from aag_cad.pages import html_page
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import joint_of
 from aag_cad.parts.model import Gridshell
-from assembly.base.steps import Phase, Plan
+from assembly.base.phases import PHASE
+from assembly.base.steps import Plan
 from assembly.booklet.contents import Booklet
 from assembly.booklet.shared_pictures import shared_pictures
 
 # A step by its number and title, with the marks of what it handles.
 Handled: TypeAlias = tuple[int, str, Iterable[str]]
-
-# The phases whose fasteners hold the planks at their joints; in the others they hold blocks, studs or the cover.
-_FASTENED: tuple[Phase, ...] = (
-    "studs", "edge planks", "fix geodesics", "stand", "ridges", "open ridges", "lift off", "release geodesics",
-    "pull edge planks",
-)  # fmt: skip
 
 
 def _shown(data: Mapping[str, Any]) -> list[str]:
@@ -32,15 +27,15 @@ def _shown(data: Mapping[str, Any]) -> list[str]:
     return [name for name in names if name]
 
 
-def _handled(plan: Plan, gridshell: Gridshell) -> Iterable[Handled]:
+def _handled(booklet: Booklet, plan: Plan, gridshell: Gridshell) -> Iterable[Handled]:
     """Yield for each step its number, title and what it handles: its parts, beams, shells, and planks it fastens."""
-    index = index_of(gridshell)
+    index, titles = index_of(gridshell), {card["number"]: card["title"] for card in booklet.data["cards"]}
     for step in plan.steps:
         own = set(step.marks)
-        joints = {joint_of(mark) for mark in own} if step.phase in _FASTENED else set[str]()
+        joints = {joint_of(mark) for mark in own} if PHASE[step.phase].fastens else set[str]()
         members = (mark for joint in joints if joint in index.joints for mark in index.joints[joint].members)
         fastened = {index.unit_of[mark] for mark in members if mark in index.unit_of}
-        yield step.number, step.title, sorted({*own, *step.assemblies, *fastened})
+        yield step.number, titles[step.number], sorted({*own, *step.assemblies, *fastened})
 
 
 def filled_page(booklet: Booklet, listed: Iterable[Handled], example: str) -> str:
@@ -57,4 +52,4 @@ def filled_page(booklet: Booklet, listed: Iterable[Handled], example: str) -> st
 def page_html(booklet: Booklet, plan: Plan, gridshell: Gridshell) -> str:
     """Return the booklet of a plan as one HTML page; the same plan gives the same text."""
     example = next(iter((*index_of(gridshell).geodesics, *index_of(gridshell).planks)))
-    return filled_page(booklet, _handled(plan, gridshell), example)
+    return filled_page(booklet, _handled(booklet, plan, gridshell), example)

@@ -8,13 +8,13 @@ from aag_cad.parts.model import Gridshell, Shell
 from assembly.base.locking_order import LockingOrder
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.segments import Segmentation
+from assembly.booklet.segment_sheet import segment_cards
 from assembly.pictures.label_map import MAP_SIZE, label_map_svg
 from assembly.pictures.layer_legend import layer_legend_svg
 from assembly.pictures.laying_plan import laying_header, laying_plan_svg, laying_rows
 from assembly.pictures.locking_chart import locking_svg, locking_table
 from assembly.pictures.segment_picture import segment_svg
 from assembly.plan.planned import Planned
-from assembly.transport.segment_sheet import segment_cards
 
 # The joints on each map: those that a crew looks for on the whole shell, and the many blocks on one of their own.
 _MAPS = (("N", "F", "R"), ("K",))
@@ -55,9 +55,9 @@ def map_sheets(gridshell: Gridshell, twins: Mapping[str, str], language: Languag
     return {"maps": sheets}, pictures
 
 
-def laying_sheets(gridshell: Gridshell, planned: Planned, twins: Mapping[str, str]) -> Made:
+def laying_sheets(gridshell: Gridshell, planned: Planned, twins: Mapping[str, str], language: Language) -> Made:
     """Return the flat laying plans with their coordinates, of members and of single points; and their pictures."""
-    sheets, pictures, language = [], dict[str, str](), planned.plan.language
+    sheets, pictures = [], dict[str, str]()
     for shell, names in _firsts(gridshell, twins):
         if shell.mark not in planned.flat:
             continue

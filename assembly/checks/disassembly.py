@@ -194,7 +194,7 @@ def _propped(plan: Plan, shell: Shell) -> Iterator[str]:
     middles = np.array([plank.curve.points.mean(axis=0) for plank in shell.planks])
     centre = lengths @ middles / lengths.sum()
     for step in (step for phase in _LETTING_GO for step in _steps(plan, phase, shell.mark)):
-        under = feet | {mark for mark in step.props if mark in joints}
+        under = feet | {mark for mark in step.propped if mark in joints}
         if not _surrounded(np.array([joints[mark].point for mark in sorted(under)])[:, :2], centre[:2]):
             yield f"{shell.mark}: step {step.id} lets go of it, but its centre is not over its feet and props"
 

@@ -139,7 +139,7 @@ def _own(stands: Sequence[Step], at: Mapping[str, Step], part: Part) -> Sequence
 def _shell_problems(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]]) -> Iterator[str]:
     forced = ancestors(plan)
     hoists = [step for step in plan.steps if step.phase == "hoist" and shell.mark in step.assemblies]
-    if len(hoists) != 1 or not hoists[0].hold:
+    if len(hoists) != 1 or not hoists[0].held:
         yield f"{shell.mark}: expected one hoist step" + (" with a hold point" if hoists else "")
     for lower, upper, joint in _layering(shell, places):
         (first, turn), (second, later_turn) = places[lower], places[upper]

@@ -10,8 +10,9 @@ from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Shell
 from aag_cad.units import Floats
 from assembly.base.locking_order import LockingOrder
+from assembly.base.phases import Phase
 from assembly.base.segments import Segment, Segmentation
-from assembly.base.steps import Phase, Plan, Step
+from assembly.base.steps import Plan, Step
 
 _LEAST_PROPS = 2
 
@@ -54,35 +55,37 @@ def _stand_problems(
     shell: Shell, segment: Segment, stands: Sequence[Step], parted: str, forced: set[str]
 ) -> Iterator[str]:
     name = segment.name
-    if len(stands) != 1 or not stands[0].hold:
+    if len(stands) != 1 or not stands[0].held:
         yield f"{name}: expected one stand step" + (" with a hold point" if stands else "")
     for stand in stands:
         if parted not in forced:
             yield f"{name}: stands in step {stand.id}, but nothing forces the parting of {shell.mark} before it"
-        if len(stand.props) < _LEAST_PROPS or not set(stand.props) <= index_of(shell).joints.keys():
-            yield f"{name}: step {stand.id} names {len(stand.props)} props of {shell.mark}, expected at least 2"
-        elif not _held(shell, segment, stand.props):
+        if len(stand.propped) < _LEAST_PROPS or not set(stand.propped) <= index_of(shell).joints.keys():
+            yield f"{name}: step {stand.id} names {len(stand.propped)} props of {shell.mark}, expected at least 2"
+        elif not _held(shell, segment, stand.propped):
             yield f"{name}: its centre of gravity is outside its feet and the props of step {stand.id}: it falls"
 
 
 def _shoe_problems(plan: Plan, shell: Shell, segment: Segment, forced: dict[str, set[str]]) -> Iterator[str]:
     """Yield the bolts of a segment's shoes that are put in before it stands."""
-    own, stand = set(segment.geodesics), f"site.stand.{segment.name}"
+    own = set(segment.geodesics)
+    stood = {step.id for step in plan.steps if step.phase == "stand" and segment.name in step.segments}
     bolts = {m for joint in shell.joints if joint.kind == "foot" and own & set(joint.members) for m in joint.fasteners}
     for step in plan.steps:
-        for mark in (mark for mark in step.marks if mark in bolts and stand not in {step.id, *forced[step.id]}):
-            yield f"{mark} bolts a shoe of {segment.name}, but nothing forces step {stand} before step {step.id}"
+        for mark in (mark for mark in step.marks if mark in bolts and not stood & {step.id, *forced[step.id]}):
+            yield f"{mark} bolts a shoe of {segment.name}, but nothing forces its standing before step {step.id}"
 
 
 def _cut_problems(plan: Plan, shell: Shell, own: Sequence[Segment]) -> Iterator[str]:
     """Yield what is wrong with the parting, the standing and the joining of the segments of one shell."""
     forced = ancestors(plan)
     divides, joins = _steps(plan, "divide", shell.mark), _steps(plan, "splice", shell.mark)
-    if len(divides) != 1 or not (divides[0].hold and divides[0].extras and divides[0].props):
+    if len(divides) != 1 or not (divides[0].held and divides[0].extras and divides[0].props):
         yield f"{shell.mark}: expected one divide step with hold point, props and what it takes out"
     parted = divides[0].id if divides else ""
-    stands = {s.name: [step for step in plan.steps if step.id == f"site.stand.{s.name}"] for s in own}
-    strays = {step.id for step in _steps(plan, "stand", shell.mark)} - {f"site.stand.{s.name}" for s in own}
+    found_stands = _steps(plan, "stand", shell.mark)
+    stands = {s.name: [step for step in found_stands if step.segments == (s.name,)] for s in own}
+    strays = {step.id for step in found_stands} - {step.id for steps in stands.values() for step in steps}
     yield from (f"{shell.mark}: step {stray} stands what is no segment of it" for stray in sorted(strays))
     for segment in own:
         found = stands[segment.name]
@@ -93,15 +96,15 @@ def _cut_problems(plan: Plan, shell: Shell, own: Sequence[Segment]) -> Iterator[
     names = [segment.name for segment in own]
     beside = {a: {names[i - 1], names[(i + 1) % len(names)]} for i, a in enumerate(names)}
     for name, steps in stands.items():
-        near = {f"site.stand.{other}" for other in beside[name]}
+        near = {step.id for other in beside[name] for step in stands[other]}
         if steps and order.index(steps[0].id) != first and not near & forced[steps[0].id]:
             yield f"{name}: nothing forces a segment beside it to stand before step {steps[0].id}"
     for a, b in pairwise(names):
-        own_joins = [step for step in joins if step.id in (f"site.splice.{a}.{b}", f"site.splice.{b}.{a}")]
+        own_joins = [step for step in joins if set(step.segments) == {a, b}]
         if len(own_joins) != 1 or not own_joins[0].extras:
             yield f"{a}, {b}: expected one splice step that says what it puts in"
         for step in own_joins:
-            missing = [s for s in (a, b) if f"site.stand.{s}" not in forced[step.id]]
+            missing = [s for s in (a, b) if not {stand.id for stand in stands[s]} & forced[step.id]]
             yield from (f"{s}: joined in step {step.id}, but nothing forces its standing before" for s in missing)
 
 
@@ -116,7 +119,7 @@ def travel_problems(plan: Plan, shell: Shell, segmentation: Segmentation | None)
         yield from _cut_problems(plan, shell, own)
         return
     stands = _steps(plan, "stand", shell.mark)
-    if len(stands) != 1 or not stands[0].hold:
+    if len(stands) != 1 or not stands[0].held:
         yield f"{shell.mark}: expected one stand step" + (" with a hold point" if stands else "")
     parted = (*_steps(plan, "divide", shell.mark), *_steps(plan, "splice", shell.mark))
     yield from (f"{shell.mark}: travels whole, but step {step.id} is there" for step in parted)
@@ -126,11 +129,11 @@ def prop_problems(plan: Plan, order: LockingOrder) -> Iterator[str]:
     """Yield props that a finished shell needs until its neighbours hold it and that no stand or ridge step names."""
     wanted = {prop.joint for prop in order.released.props}
     stands = _steps(plan, "stand", order.shell)
-    under = {joint for step in stands for joint in step.props}
+    under = {joint for step in stands for joint in step.propped}
     for joint in sorted(wanted - under) if stands else ():
         yield f"{order.shell}: stands without the prop under {joint}, and sinks by {order.released.displacement:.0f} mm"
     for step in (step for step in plan.steps if step.phase == "ridges" and order.shell in step.assemblies):
-        for joint in sorted(wanted - set(step.props)):
+        for joint in sorted(wanted - set(step.propped)):
             yield f"{order.shell}: the prop under {joint} is not named in step {step.id}, before its ridges are joined"
 
 
@@ -167,5 +170,5 @@ def locking_problems(plan: Plan, gridshell: Gridshell, order: LockingOrder) -> I
 
 
 def _missing(step: Step, wanted: set[str]) -> Iterator[str]:
-    for joint in sorted(wanted - set(step.props)):
+    for joint in sorted(wanted - set(step.propped)):
         yield f"step {step.id}: the shell needs a prop under {joint}, which it does not name"

@@ -23,8 +23,9 @@ from aag_cad.parts.model import (
 )
 from aag_cad.units import Floats
 from assembly.base.part_groups import shell_kit
+from assembly.base.phases import is_down
 from assembly.base.segments import Segmentation
-from assembly.base.steps import DOWN_PHASES, Plan, Step
+from assembly.base.steps import Plan, Step, StepProp
 from assembly.drawing.outline import Outline, ridge_outline, shell_outline, vault_outline
 from assembly.graph.interlacing import Slide
 from assembly.pictures.segment_scenes import stood_segments
@@ -91,9 +92,8 @@ def twin_step(step: Step, shell: str, twin: str) -> Step:
     def moved(marks: Sequence[str]) -> tuple[str, ...]:
         return tuple(in_other_shell(mark, shell, twin) for mark in marks)
 
-    return replace(
-        step, shell=twin, marks=moved(step.marks), assemblies=moved(step.assemblies), props=moved(step.props)
-    )
+    props = tuple(StepProp(joint, twin) for joint in moved(step.propped))
+    return replace(step, shell=twin, marks=moved(step.marks), assemblies=moved(step.assemblies), props=props)
 
 
 def _in_place(plan: Plan, gridshell: Gridshell) -> dict[str, frozenset[str]]:
@@ -152,7 +152,11 @@ def ridge_planks(gridshell: Gridshell, pair: Sequence[str]) -> tuple[str, ...]:
 
 
 def sheets_of(
-    plan: Plan, gridshell: Gridshell, segmentation: Segmentation | None = None, slides: Iterable[Slide] = ()
+    plan: Plan,
+    gridshell: Gridshell,
+    segmentation: Segmentation | None = None,
+    slides: Iterable[Slide] = (),
+    language: Language = "en",
 ) -> Sheets:
     """Return all outlines, drawn once for all steps of a plan of putting together or of taking down.
 
@@ -160,7 +164,7 @@ def sheets_of(
     """
     twins = shell_twins(gridshell)
     firsts = [shell for shell in gridshell.shells if twins[shell.mark] == shell.mark]
-    down = any(step.phase in DOWN_PHASES for step in plan.steps)
+    down = any(is_down(step.phase) for step in plan.steps)
     return Sheets(
         gridshell=gridshell,
         twins=twins,
@@ -177,5 +181,5 @@ def sheets_of(
         stood=stood_segments(plan, segmentation),
         segmentation=segmentation,
         slides={slide.unit: slide for slide in slides},
-        language=plan.language,
+        language=language,
     )

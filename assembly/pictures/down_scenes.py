@@ -54,7 +54,7 @@ def _released(shell: Shell, step: Step, there: frozenset[str], outer: set[str]) 
     rings = tuple(joint for joint in _joints(step, [m for m in screws if m not in outer]) if joint not in dots)
     numbers = numbers_of((*dots, *rings))
     return Scene(there=there, worked_on=freed, names=_short(freed), dots=dots, rings=rings, numbers=numbers,
-                 props=step.props)  # fmt: skip
+                 props=step.propped)  # fmt: skip
 
 
 def _edges(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
@@ -62,7 +62,7 @@ def _edges(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
     straps = [strap.mark for strap in shell.straps if strap.mark in step.marks]
     screwed = _joints(step, [screw.mark for screw in shell.screws])
     return Scene(there=there, new=(*edges, *straps), names=_short(edges), rings=screwed,
-                 numbers=numbers_of(screwed) | _short(straps), props=step.props)  # fmt: skip
+                 numbers=numbers_of(screwed) | _short(straps), props=step.propped)  # fmt: skip
 
 
 def down_scene(shell: Shell, step: Step, there: frozenset[str], outer: set[str]) -> Scene:
@@ -79,15 +79,15 @@ def down_scene(shell: Shell, step: Step, there: frozenset[str], outer: set[str])
             return Scene(there=there, new=step.marks, names=_short(plates), rings=rings)
         case "prop":
             edges = list(index_of(shell).edges)
-            told = _short(step.props)
-            return Scene(there=there, worked_on=edges, names=_short(edges), props=step.props, numbers=told)
+            told = _short(step.propped)
+            return Scene(there=there, worked_on=edges, names=_short(edges), props=step.propped, numbers=told)
         case "lift off":
             feet = feet_of(shell)
             return Scene(
                 there=there, rings=feet, dots=slings, numbers=numbers_of(feet), tags=dict.fromkeys(slings, "H")
             )
         case "hang":
-            return Scene(there=there, dots=slings, tags=dict.fromkeys(slings, "H"), props=step.props)
+            return Scene(there=there, dots=slings, tags=dict.fromkeys(slings, "H"), props=step.propped)
         case "release geodesics":
             return _released(shell, step, there, outer)
         case "pull edge planks":

@@ -8,8 +8,9 @@ from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import in_other_shell, is_in_shell, joint_of, parse_mark, shell_of, short_mark
 from aag_cad.parts.model import Shell
 from assembly.base.part_groups import driven_from_outside
+from assembly.base.phases import PHASE, is_down
 from assembly.base.segments import Segmentation
-from assembly.base.steps import DOWN_PHASES, Plan, Step
+from assembly.base.steps import Plan, Step
 from assembly.drawing.bench import beam_strips_svg
 from assembly.drawing.outline import shell_outline
 from assembly.drawing.steel_sections import strap_section_svg
@@ -33,8 +34,6 @@ __all__ = [
     "sheets_of",
     "step_pictures",
 ]
-
-_ONE_SHELL = ("uncover", "prop", "lift off", "cover")
 
 
 def _short(marks: Sequence[str]) -> dict[str, str]:
@@ -65,7 +64,7 @@ def _fixing_scene(shell: Shell, step: Step, there: frozenset[str], single: Seque
     rings = tuple(joint for joint in _joints_of(step, "W") if joint not in dots)
     done = tuple(joint_of(screw.mark) for screw in shell.screws if screw.mark in there)
     return Scene(there=there, worked_on=fixed, names=_short(fixed), dots=dots, rings=rings,
-                 numbers=numbers_of((*dots, *rings)), done=done, props=step.props)  # fmt: skip
+                 numbers=numbers_of((*dots, *rings)), done=done, props=step.propped)  # fmt: skip
 
 
 def _sliding_scene(shell: Shell, step: Step, there: frozenset[str], known: Mapping[str, Slide]) -> Scene:
@@ -82,7 +81,7 @@ def _edge_scene(shell: Shell, step: Step, there: frozenset[str], flat: Sequence[
     straps = tuple(strap.mark for strap in shell.straps if strap.mark in step.marks)
     screwed = _joints_of(step, "W")
     told = numbers_of(screwed) | _short(straps)
-    return Scene(there=there, new=(*flat, *straps), names=_short(flat), rings=screwed, numbers=told, props=step.props)
+    return Scene(there=there, new=(*flat, *straps), names=_short(flat), rings=screwed, numbers=told, props=step.propped)
 
 
 def _shell_scene(shell: Shell, step: Step, there: frozenset[str], slides: Mapping[str, Slide]) -> Scene:
@@ -105,7 +104,7 @@ def _shell_scene(shell: Shell, step: Step, there: frozenset[str], slides: Mappin
         case "hoist":
             control, slings = control_figures(shell).studs, sling_points(shell)
             tags = {mark: name for name, mark in control.items()} | dict.fromkeys(slings, "H")
-            props = tuple(mark for mark in step.props if mark not in tags)
+            props = tuple(mark for mark in step.propped if mark not in tags)
             return Scene(there=there, dots=slings, rings=tuple(control.values()), tags=tags, props=props,
                          numbers=_short(props))  # fmt: skip
         case "edge planks":
@@ -115,8 +114,8 @@ def _shell_scene(shell: Shell, step: Step, there: frozenset[str], slides: Mappin
         case _:
             blocks = [block.mark for block in shell.blocks if block.mark in there]
             straps = tuple(strap.mark for strap in shell.straps if strap.mark in there)
-            studs = [stud.mark for stud in shell.studs if stud.mark not in step.props]
-            return Scene(there=there, new=straps, dots=studs, rings=blocks, props=step.props)
+            studs = [stud.mark for stud in shell.studs if stud.mark not in step.propped]
+            return Scene(there=there, new=straps, dots=studs, rings=blocks, props=step.propped)
 
 
 def _cover_scene(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
@@ -129,7 +128,7 @@ def _cover_scene(shell: Shell, step: Step, there: frozenset[str]) -> Scene:
 
 def home_shell(step: Step) -> str:
     """Return the shell that the picture of a step shows alone, or "" where it shows the whole."""
-    if step.phase in _ONE_SHELL:
+    if PHASE[step.phase].shown == "moved shell":
         return shell_of(step.marks[0]) if step.marks else step.assemblies[0]
     return step.shell
 
@@ -156,7 +155,7 @@ def picture_key(sheets: Sheets, step: Step) -> tuple[object, ...]:
     if not home_shell(step) or step.phase == "divide":
         return (step.id,)
     shell, twin, there = _twinned(sheets, step)
-    return shell.mark, twin.phase, twin.marks, twin.assemblies, twin.props, there
+    return shell.mark, twin.phase, twin.marks, twin.assemblies, twin.propped, there
 
 
 def step_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
@@ -173,7 +172,7 @@ def step_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
         )
         return (site_svg(sheets, step), *sections)
     shell, step, there = _twinned(sheets, step)
-    if step.phase in DOWN_PHASES:
+    if is_down(step.phase):
         return down_pictures(sheets, shell, step, there, driven_from_outside(shell))
     if step.phase == "cover":
         return (scene_svg(sheets.large[shell.mark], _cover_scene(shell, step, there)),)

@@ -11,7 +11,7 @@ from aag_cad.parts.marks import short_mark
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Plank, Shell
 from aag_cad.units import Floats
-from assembly.base.segments import Brace, PlankPiece, Segment, Segmentation, Splice
+from assembly.base.segments import Brace, PlankPiece, Segment, Segmentation, Splice, splices_of
 from assembly.drawing.outline import Outline, shell_outline
 from assembly.drawing.part_outlines import plank_rings
 from assembly.drawing.svg import (

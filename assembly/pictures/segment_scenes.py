@@ -18,12 +18,8 @@ from assembly.pictures.step_pictures import Scene
 
 def moved_segments(step: Step, segmentation: Segmentation | None) -> tuple[Segment, ...]:
     """Return the segments that a step sets down or joins; none where the shell is whole."""
-    listed = segmentation.segments if segmentation else ()
-    names = {segment.name: segment for segment in listed if segment.name != segment.shell}
-    if step.phase == "stand":
-        return tuple(segment for name, segment in names.items() if step.id == f"site.stand.{name}")
-    pairs = ((a, b) for a in names.values() for b in names.values() if a is not b)
-    return next(((a, b) for a, b in pairs if step.id == f"site.splice.{a.name}.{b.name}"), ())
+    named = {segment.name: segment for segment in segmentation.segments} if segmentation else {}
+    return tuple(named[name] for name in step.segments) if step.phase in ("stand", "splice") else ()
 
 
 def stood_segments(plan: Plan, segmentation: Segmentation | None) -> dict[str, tuple[str, ...]]:
@@ -97,8 +93,8 @@ def segment_scene(shell: Shell, step: Step, segmentation: Segmentation, stood: S
         new = [key for segment in moved for key in own[segment.name]]
         feet = tuple(foot for foot in feet_of(shell) if _geodesic_of(shell, foot) in new)
         names = {line: short_mark(line) for segment in moved for line in segment.geodesics}
-        numbers = numbers_of(feet) | {mark: short_mark(mark) for mark in step.props}
-        return Scene(there=there, new=new, names=names, rings=feet, numbers=numbers, props=step.props)
+        numbers = numbers_of(feet) | {mark: short_mark(mark) for mark in step.propped}
+        return Scene(there=there, new=new, names=names, rings=feet, numbers=numbers, props=step.propped)
     splices = [splice for splice in segmentation.splices if is_in_shell(splice.line, shell.mark)]
     splices = _between(splices, moved) if moved else splices
     lines = dict.fromkeys(splice.line for splice in splices)
@@ -112,5 +108,5 @@ def segment_scene(shell: Shell, step: Step, segmentation: Segmentation, stood: S
         names={mark: short_mark(mark) for mark in lines},
         dots=dots,
         numbers=numbers_of(dots),
-        props=step.props,
+        props=step.propped,
     )

@@ -36,10 +36,10 @@ def _site_scene(gridshell: Gridshell, step: Step, there: frozenset[str]) -> Scen
             dots = tuple(foot for mark in moved for foot in feet[mark])
             worked_on = [plank for mark in moved for plank in planks[mark]]
             return Scene(there=there | grounded, worked_on=worked_on, dots=dots, numbers=numbers_of(dots),
-                         props=step.props)  # fmt: skip
+                         props=step.propped)  # fmt: skip
         case "ridges" | "open ridges":
             facing = ridge_planks(gridshell, step.assemblies)
-            return Scene(there=there | grounded, worked_on=facing, new=step.marks, props=step.props)
+            return Scene(there=there | grounded, worked_on=facing, new=step.marks, props=step.propped)
         case _:
             return Scene(there={mark for listed in planks.values() for mark in listed} | grounded)
 

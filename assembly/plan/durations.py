@@ -35,18 +35,14 @@ from aag_cad.parts.model import (
 from aag_cad.parts.quantities import sizes
 from aag_cad.units import MM_PER_M
 from assembly.base.errors import PlanError
-from assembly.base.steps import DOWN_PHASES, Plan, Step
+from assembly.base.phases import PHASE, is_down
+from assembly.base.steps import Plan, Step
 
 _KINDS: dict[type[Part], str] = {
     Stud: "stud", CouplingBlock: "block", Bolt: "bolt", Screw: "screw", Strap: "strap", Shoe: "shoe", Rod: "rod",
     Footing: "footing", Mullion: "mullion", Strip: "strip", ClampingBar: "clamp", Blade: "blade",
 }  # fmt: skip
 _LONG = (Plank, Mullion, Strip, ClampingBar)
-# Bolts of the other phases stay loose until the shell is tightened.
-_TIGHTENED_AT_ONCE = ("prefabricate", "stand", "ridges")
-# The joints whose bolts are gone over, tightening them or loosening them, without being put in or taken out.
-_SHELL_BOLTS: dict[str, tuple[JointKind, ...]] = {"tighten": ("AA", "AG", "boundary", "ridge"), "lower": ("AA",)}
-_ONCE = {"hoist": "hoist", "stand": "stand", "lift off": "stand", "lower": "lower", "prop": "prop"}
 
 
 @dataclass(frozen=True)
@@ -90,8 +86,7 @@ def _lengths(gridshell: Gridshell, plan: Plan) -> _Lengths:
 
 def _work_with(known: _Lengths, step: Step) -> StepWork:
     """Return what is done in a step."""
-    phase: str = step.phase
-    down = phase in DOWN_PHASES
+    row, down = PHASE[step.phase], is_down(step.phase)
     handled, done = Counter[str](), defaultdict[str, float](float)
     for mark in step.marks:
         part = known.parts.get(mark)
@@ -103,17 +98,15 @@ def _work_with(known: _Lengths, step: Step) -> StepWork:
     measured = [mark for mark in step.assemblies if mark in known.parts]
     done["carry"] = sum(known.lengths.get(mark, 0.0) for mark in (*step.marks, *beams, *measured)) / MM_PER_M
     done["measure"] += len(measured)
-    if phase in _TIGHTENED_AT_ONCE:
+    if row.tightens:
         done["tighten"] += handled["bolt"]
-    if phase in _SHELL_BOLTS:
-        bolts = known.bolts.get(step.shell, {})
-        done["tighten"] += sum(bolts.get(kind, 0) for kind in _SHELL_BOLTS[phase])
-    if phase in _ONCE:
-        parts = known.stands[step.assemblies[0]] if phase == "stand" else 1
-        done[_ONCE[phase]] += 1.0 / parts
-    handled["ridge"] += phase in ("ridges", "open ridges")
-    handled["hoist"] += phase == "hang"
-    handled["slide"] += phase == "slide"
+    bolts = known.bolts.get(step.shell, {})
+    done["tighten"] += sum(bolts.get(kind, 0) for kind in row.gone_over)
+    if row.once:
+        parts = known.stands[step.assemblies[0]] if step.phase == "stand" else 1
+        done[row.once] += 1.0 / parts
+    if row.undone:
+        handled[row.undone] += 1
     done["extra"] += len(step.extras)
     undone = dict(handled) if down else {}
     for kind, count in ({} if down else handled).items():

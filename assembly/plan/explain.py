@@ -6,10 +6,10 @@ from difflib import get_close_matches
 
 import networkx as nx
 
-from aag_cad.language import Language, figure, say, words_table
+from aag_cad.language import Sentence, Text, has_words, text
 from aag_cad.parts.marks import joint_of
 from assembly.base.errors import PlanError
-from assembly.base.locking_order import LockingOrder, LockingStep, frequency
+from assembly.base.locking_order import LockingOrder, frequency
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.steps import Plan, Step
 from assembly.plan.schedule import Schedule
@@ -81,35 +81,31 @@ def _fastened(
     return found
 
 
-def _hertz(step: LockingStep, language: Language) -> str:
-    return figure(f"{frequency(step.eigenvalues[0]):.2f}", language)
-
-
-def _locked(mark: str, orders: Sequence[LockingOrder], language: Language) -> Iterator[str]:
+def _locked(mark: str, orders: Sequence[LockingOrder]) -> Iterator[Text]:
     """Yield when a flat plank is fixed in the locking order, and what that does."""
     for order in orders:
         for i, step in enumerate(order.steps):
             if mark in step.marks:
                 before = order.steps[i - 1]
-                yield say(
-                    language, "explain.fixed", place=i, count=len(order.steps) - 1,
+                yield text(
+                    "explain.fixed", place=i, count=len(order.steps) - 1,
                     before=before.soft_modes, after=step.soft_modes,
-                    low=_hertz(before, language), high=_hertz(step, language),
+                    low=frequency(before.eigenvalues[0]), high=frequency(step.eigenvalues[0]),
                 )  # fmt: skip
 
 
-def _line(plan: Plan, step: Step, around: Mapping[tuple[int, str], Sequence[str]], otherwise: str) -> str:
+def _line(step: Step, around: Mapping[tuple[int, str], Sequence[str]], otherwise: str) -> Text:
     """Return the line about a step: the first relation that it has to a part, else that one waits for the other."""
     for relation in _RELATIONS:
         marks = around.get((step.number, relation), ())
         if marks:
             more = " …" if len(marks) > _MOST_SHOWN else ""
             shown = f"{joined_ranges(marks[:_MOST_SHOWN])}{more}"
-            return say(plan.language, f"explain.{relation}", number=step.number, title=step.title, marks=shown)
-    return say(plan.language, f"explain.{otherwise}", number=step.number, title=step.title)
+            return text(f"explain.{relation}", number=step.number, title=step.title, marks=shown)
+    return text(f"explain.{otherwise}", number=step.number, title=step.title)
 
 
-def _reasons(plan: Plan, step: Step, around: Mapping[tuple[int, str], Sequence[str]], later: bool) -> list[str]:
+def _reasons(plan: Plan, step: Step, around: Mapping[tuple[int, str], Sequence[str]], later: bool) -> list[Text]:
     """Return why a step cannot come earlier (or later), one line for each step that it touches."""
     touched = {number for number, relation in around if later or relation != "fastened"}
     found = []
@@ -117,13 +113,13 @@ def _reasons(plan: Plan, step: Step, around: Mapping[tuple[int, str], Sequence[s
         if other.number > step.number if later else other.number < step.number:
             linked = step.id in other.predecessors if later else other.id in step.predecessors
             if linked or other.number in touched:
-                found.append(_line(plan, other, around, "awaited" if later else "waits"))
+                found.append(_line(other, around, "awaited" if later else "waits"))
     return found
 
 
-def _kind(kind: str, language: Language) -> str:
+def _kind(kind: str) -> Sentence:
     """Return the word for a kind of part; a kind that the tables do not know stands as it is."""
-    return say(language, f"explain.kinds.{kind}") if kind in words_table("explain")["kinds"] else kind
+    return text(f"explain.kinds.{kind}") if has_words(f"explain.kinds.{kind}") else kind
 
 
 def explanation(
@@ -132,38 +128,37 @@ def explanation(
     mark: str,
     schedule: Schedule | None = None,
     locking: Sequence[LockingOrder] = (),
-) -> list[str]:
-    """Return why a part or beam comes when it does, one line each, in the plan's language.
+) -> list[Text]:
+    """Return why a part or beam comes when it does, one line each.
 
     ``graph`` is that of ``assembly.graph.gridshell_graph``. PlanError if no part has the mark, or no step handles it.
     """
-    parts, language = _piece(graph, mark), plan.language
+    parts = _piece(graph, mark)
     at, node = step_of_parts(plan, graph), graph.nodes[parts[0]]
     made = next((step for step in plan.steps if parts[0] in step.marks), None)
     step = at.get(parts[0])
     if step is None:
         raise PlanError(f"--explain {mark}: no step of the plan handles it; see the findings of the plan")
     length = max(float(graph.nodes[part]["length_mm"]) for part in parts)
-    mass = figure(f"{sum(float(graph.nodes[part]['mass_kg']) for part in parts):.1f}", language)
-    what = _kind(str(node["kind"]), language)
-    lines = [say(language, "explain.part", mark=mark, kind=what, length=length, mass=mass)]
+    mass = sum(float(graph.nodes[part]["mass_kg"]) for part in parts)
+    lines = [text("explain.part", mark=mark, kind=_kind(str(node["kind"])), length=length, mass=mass)]
     beam = node.get("beam", "")
     if beam and beam != mark:
-        lines.append(say(language, "explain.of_beam", beam=beam))
+        lines.append(text("explain.of_beam", beam=beam))
     if made is not None and made is not step:
-        lines.append(say(language, "explain.made", number=made.number, title=made.title, beam=beam))
-    lines.append(say(language, "explain.comes", number=step.number, title=step.title))
+        lines.append(text("explain.made", number=made.number, title=made.title, beam=beam))
+    lines.append(text("explain.comes", number=step.number, title=step.title))
     if step.phase == "slide":
-        lines.append(say(language, "explain.slid"))
+        lines.append(text("explain.slid"))
     around = _around(graph, parts, at) | _fastened(graph, parts, plan, step)
     earlier = _reasons(plan, step, around, later=False)
-    lines += [say(language, "explain.before"), *(f"  {line}" for line in earlier)] if earlier else []
-    lines += [] if earlier else [say(language, "explain.first")]
+    lines += [text("explain.before"), *(text("explain.line", line=line) for line in earlier)] if earlier else []
+    lines += [] if earlier else [text("explain.first")]
     later = _reasons(plan, step, around, later=True)
-    lines += [say(language, "explain.after"), *(f"  {line}" for line in later)] if later else []
-    lines += _locked(mark, locking, language)
+    lines += [text("explain.after"), *(text("explain.line", line=line) for line in later)] if later else []
+    lines += _locked(mark, locking)
     if schedule is not None:
         when = next(found for found in schedule.steps if found.id == step.id)
         key = "explain.critical" if when.critical else "explain.slack"
-        lines.append(say(language, key, slack=when.slack))
+        lines.append(text(key, slack=when.slack))
     return lines

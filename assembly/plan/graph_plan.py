@@ -10,19 +10,19 @@ import networkx as nx
 from aag_cad.design_making import Minutes
 from aag_cad.errors import MarkError
 from aag_cad.findings import Finding
-from aag_cad.language import Figure, Language, say, says, text
+from aag_cad.language import Figure, Text, text
 from aag_cad.parts.marks import short_mark
 from aag_cad.units import MM_PER_M
-from assembly.base.crew import Crew, crew_of, hands_for, lifting_findings, named_marks
-from assembly.base.steps import Phase, Plan, Step
-from assembly.graph.interlacing import Crossing, Interlacing, Slide, interlacing
-from assembly.graph.laying_units import Unit, units_of
+from assembly.base.crew import crew_of, lifting_findings, named_marks
+from assembly.base.phases import Phase
+from assembly.base.steps import Plan
+from assembly.graph.laying_units import Crossing, Interlacing, Slide, Unit, interlacing, units_of
 from assembly.laying.joining import Joining, joinings
 from assembly.laying.order import FlatOrder, flat_order_of, groups_of
+from assembly.plan.work import PAIR, Work, steps_from
 
 LAID_A_STEP = 7
 JOINTS_A_STEP = 24
-PAIR = 2
 _FEW = 4
 
 
@@ -35,17 +35,16 @@ class _Task:
     kits: Mapping[str, tuple[str, ...]]
     woven: Interlacing
     order: FlatOrder
-    weights: Mapping[str, tuple[float, float]]
-    crew: Crew
-    language: Language
 
-    def say(self, key: str, **figures: Figure) -> str:
-        """Return a text of the table ``plan`` in ``words/graph.toml``."""
-        return say(self.language, f"graph.plan.{key}", **figures)
+    def work(self, name: str, phase: Phase, shell: str, title: Text, marks: tuple[str, ...], least: int = 1) -> Work:
+        """Return a piece of work that as yet waits for nothing."""
+        name = f"{shell}.{name}" if shell else name
+        return Work(name, phase, title, text(f"graph.plan.{phase}"), shell, marks=marks, least_crew=least)
 
-    def says(self, key: str) -> tuple[str, ...]:
-        """Return a list of texts of that table."""
-        return says(self.language, f"graph.plan.{key}")
+
+def _says(key: str, **figures: Figure) -> Text:
+    """Return a text of the table ``plan`` in ``words/graph.toml``."""
+    return text(f"graph.plan.{key}", **figures)
 
 
 def _short(mark: str) -> str:
@@ -74,64 +73,44 @@ def _weights(
     return found | {mark: (masses[mark], float(graph.nodes[mark]["length_mm"])) for mark in single}
 
 
-def _step(task: _Task, name: str, phase: Phase, shell: str, pieces: Iterable[str], least: int = 1) -> Step:
-    """Return a step with its hands and tools, still without parts, words and number."""
-    weights = [task.weights[mark] for mark in pieces]
-    hands = hands_for(task.crew, max(kg for kg, _ in weights), max(long for _, long in weights))
-    tools = task.says(f"{phase}.tools")
-    return Step(
-        number=0,
-        id=f"{shell}.{name}" if shell else name,
-        phase=phase,
-        title="",
-        shell=shell,
-        marks=(),
-        assemblies=(),
-        tools=(*tools, task.say("lifting.gear")) if hands.gear else tools,
-        crew=max(hands.people, min(least, task.crew.people)),
-        predecessors=(),
-        instructions=(),
-    )
-
-
-def _laying(task: _Task, steps: dict[str, str]) -> Iterator[Step]:
+def _laying(task: _Task, steps: dict[str, str]) -> Iterator[Work]:
     """Yield the laying of runs in groups; ``steps`` learns the step of each unit."""
     counts: dict[str, int] = defaultdict(int)
     for group in (group for run in task.order.runs for group in groups_of(run, LAID_A_STEP)):
         first = task.units[group[0]]
         counts[first.shell] += 1
-        step = _step(task, f"lay.{counts[first.shell]}", "lay", first.shell, group)
         below = sorted({low for unit in group for low in task.woven.precedence.predecessors(unit)})
         beneath = sorted({task.units[unit].family for unit in below})
         stack = "-".join(part for part in (first.shell, first.family) if part)
         onto = named_marks(below) if "" in beneath else ", ".join(beneath)
-        steps |= dict.fromkeys(group, step.id)
+        marks = tuple(mark for unit in group for mark in task.kits[unit])
+        title = _says("lay.title", marks=named_marks(group))
+        work = task.work(f"lay.{counts[first.shell]}", "lay", first.shell, title, marks)
+        steps |= dict.fromkeys(group, work.id)
         yield replace(
-            step,
-            title=task.say("lay.title", marks=named_marks(group)),
-            marks=tuple(mark for unit in group for mark in task.kits[unit]),
+            work,
             assemblies=tuple(unit for unit in group if unit not in task.graph),
-            predecessors=tuple(dict.fromkeys(steps[unit] for unit in below if unit in steps)),
-            instructions=(
-                task.say("lay.stack", stack=stack, marks=", ".join(map(_short, group))),
-                task.say("lay.over", below=onto) if below else task.say("lay.floor"),
-                task.say("lay.loose"),
+            after=tuple(dict.fromkeys(steps[unit] for unit in below if unit in steps)),
+            notes=(
+                _says("lay.stack", stack=stack, marks=tuple(map(_short, group))),
+                _says("lay.over", below=onto) if below else _says("lay.floor"),
+                _says("lay.loose"),
             ),
         )
 
 
-def _passed(task: _Task, slide: Slide, crossings: Iterable[Crossing]) -> str:
+def _passed(slide: Slide, crossings: Iterable[Crossing]) -> tuple[Text, ...]:
     """Return the crossings of a slide in their order, and whether it lies over or under at each."""
     turn = {joint: i for i, joint in enumerate(slide.crossings)}
     listed = sorted((turn[at.joint], at.lower, at.upper, at.joint) for at in crossings if at.joint in turn)
     texts = []
     for _, lower, upper, joint in listed:
         side, other = ("over", lower) if upper == slide.unit else ("under", upper)
-        texts.append(task.say(f"slide.{side}", joint=_short(joint), other=_short(other)))
-    return ", ".join(texts)
+        texts.append(_says(f"slide.{side}", joint=_short(joint), other=_short(other)))
+    return tuple(texts)
 
 
-def _sliding(task: _Task, steps: dict[str, str]) -> Iterator[Step]:
+def _sliding(task: _Task, steps: dict[str, str]) -> Iterator[Work]:
     """Yield the slides, one step each."""
     counts: dict[str, int] = defaultdict(int)
     at_unit: dict[str, list[Crossing]] = defaultdict(list)
@@ -141,33 +120,29 @@ def _sliding(task: _Task, steps: dict[str, str]) -> Iterator[Step]:
     for slide in task.order.slides:
         unit = task.units[slide.unit]
         counts[unit.shell] += 1
-        step = _step(task, f"slide.{counts[unit.shell]}", "slide", unit.shell, (unit.mark,), PAIR)
+        title = _says("slide.title", marks=named_marks((unit.mark,)))
+        work = task.work(f"slide.{counts[unit.shell]}", "slide", unit.shell, title, task.kits[unit.mark], PAIR)
         before = sorted(task.woven.precedence.predecessors(unit.mark))
-        free = task.say("slide.free", free=slide.free) if isfinite(slide.free) else task.say("slide.open")
-        end = task.say(f"slide.{slide.end}")
-        steps[unit.mark] = step.id
+        free = _says("slide.free", free=slide.free) if isfinite(slide.free) else _says("slide.open")
+        steps[unit.mark] = work.id
         yield replace(
-            step,
-            title=task.say("slide.title", marks=named_marks((unit.mark,))),
-            marks=task.kits[unit.mark],
+            work,
             assemblies=(unit.mark,) if unit.mark not in task.graph else (),
-            predecessors=tuple(dict.fromkeys(steps[other] for other in before if other in steps)),
-            instructions=(
-                task.say("slide.place", end=end, needed=unit.length, free=free),
-                task.say("slide.way", crossings=_passed(task, slide, at_unit[unit.mark])),
-                task.say("slide.lift"),
+            after=tuple(dict.fromkeys(steps[other] for other in before if other in steps)),
+            notes=(
+                _says("slide.place", end=_says(f"slide.{slide.end}"), needed=unit.length, free=free),
+                _says("slide.way", crossings=_passed(slide, at_unit[unit.mark])),
+                _says("slide.lift"),
             ),
         )
 
 
-def _joined(task: _Task, group: Sequence[Joining]) -> str:
-    names = [_short(joining.joint) for joining in group]
-    if len(names) <= _FEW:
-        return ", ".join(names)
-    return task.say("several", count=len(names), first=names[0], last=names[-1])
+def _joined(group: Sequence[Joining]) -> Figure:
+    names = tuple(_short(joining.joint) for joining in group)
+    return names if len(names) <= _FEW else _says("several", count=len(names), first=names[0], last=names[-1])
 
 
-def _joining(task: _Task, found: Sequence[Joining], steps: dict[str, str]) -> Iterator[Step]:
+def _joining(task: _Task, found: Sequence[Joining], steps: dict[str, str]) -> Iterator[Work]:
     """Yield the joining along the path; ``steps`` gives the step of each unit, and learns those of other parts.
 
     A step waits for all that its parts are tied to, and for the slides past these: they need the others loose.
@@ -186,32 +161,19 @@ def _joining(task: _Task, found: Sequence[Joining], steps: dict[str, str]) -> It
         for group in groups_of(run, JOINTS_A_STEP):
             counts[shell] += 1
             marks = tuple(mark for joining in group for mark in joining.marks)
-            step = _step(task, f"join.{counts[shell]}", "join", shell, marks, PAIR)
+            work = task.work(
+                f"join.{counts[shell]}", "join", shell, _says("join.title", joints=_joined(group)), marks, PAIR
+            )
             tied = sorted({other for mark in marks for other in task.graph[mark]} - set(marks))
             units = dict.fromkeys(home[other] for other in tied if other in home)
             waits = [*units, *(unit for other in units for unit in past[other]), *(o for o in tied if o not in home)]
-            steps |= dict.fromkeys(marks, step.id)
-            order = ", ".join(_short(joining.joint) for joining in group)
+            steps |= dict.fromkeys(marks, work.id)
+            order = tuple(_short(joining.joint) for joining in group)
             yield replace(
-                step,
-                title=task.say("join.title", joints=_joined(task, group)),
-                marks=marks,
-                predecessors=tuple(sorted({steps[other] for other in waits if other in steps} - {step.id})),
-                instructions=(task.say("join.order", joints=order), task.say("join.how")),
+                work,
+                after=tuple(sorted({steps[other] for other in waits if other in steps} - {work.id})),
+                notes=(_says("join.order", joints=order), _says("join.how")),
             )
-
-
-def _numbered(task: _Task, steps: Sequence[Step]) -> tuple[Step, ...]:
-    """Return steps with their numbers, the last one of each phase of a shell with what to check."""
-    last = {(step.shell, step.phase): step.id for step in steps}
-    return tuple(
-        replace(
-            step,
-            number=number,
-            hold=task.say(f"{step.phase}.hold") if last[step.shell, step.phase] == step.id else "",
-        )
-        for number, step in enumerate(steps, start=1)
-    )
 
 
 def _waiting(marks: Sequence[str]) -> tuple[Finding, ...]:
@@ -221,7 +183,7 @@ def _waiting(marks: Sequence[str]) -> tuple[Finding, ...]:
     return (Finding("AAG956", "error", ", ".join(marks), what, float(len(marks)), 0.0, "", remedy),)
 
 
-def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float, language: Language = "en") -> Plan:
+def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float) -> Plan:
     """Return the plan of laying a graph on the floor, sliding in what is woven and joining it loosely.
 
     For a crew of ``people`` who lift at most ``lift_limit`` kg each. Runs are laid in groups of at most 7, each slide
@@ -231,14 +193,14 @@ def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float, lang
     """
     crew, woven, units = crew_of(people, lift_limit), interlacing(graph, later=()), units_of(graph)
     order, kits = flat_order_of(graph, woven, later=()), _kits(graph, units)
-    task = _Task(graph, units, kits, woven, order, _weights(graph, kits, units), crew, language)
+    task, weights = _Task(graph, units, kits, woven, order), _weights(graph, kits, units)
     placed = {mark: unit for unit, kit in kits.items() for mark in kit}
     found, waiting = joinings(graph, units, placed, woven.left_out, woven.crossings)
     step_of: dict[str, str] = {}
-    steps = [*_laying(task, step_of), *_sliding(task, step_of), *_joining(task, found, step_of)]
-    lifted = {mark: weight for mark, weight in task.weights.items() if mark not in woven.left_out}
+    works = [*_laying(task, step_of), *_sliding(task, step_of), *_joining(task, found, step_of)]
+    lifted = {mark: weight for mark, weight in weights.items() if mark not in woven.left_out}
     findings = (*woven.findings, *_waiting(waiting), *lifting_findings(lifted, crew))
-    return Plan(str(graph.name), _numbered(task, steps), language, findings)
+    return Plan(str(graph.name), tuple(steps_from(works, weights, crew)), findings)
 
 
 # Keys of ``Minutes`` by the words for kinds; what the table does not know takes the time of a bolt.

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from aag_cad.design_making import Crew, Transport
-from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell
 from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Limits, Segmentation
@@ -50,11 +49,10 @@ def planned_of(
     gridshell: Gridshell,
     crew: Crew,
     limits: Limits = NO_LIMITS,
-    language: Language = "en",
     *,
     edges_first: bool = True,
 ) -> Planned:
-    """Return all plans for a gridshell, for a crew and what a transport carries, in a language.
+    """Return all plans for a gridshell, for a crew and what a transport carries.
 
     ``edges_first``: edge planks before all geodesics, as in the paper, section 3.2; else they take their turn.
     PlanError if the layers are woven so that no plank can be slid in, a part belongs to no joint, or a shell has no
@@ -66,7 +64,7 @@ def planned_of(
 
     locking, found = locking_orders(gridshell, edges_first=edges_first), segments(gridshell, limits)
     orders, size = flat_orders(gridshell), (crew.people, crew.lift_limit)
-    plan = plan_of(gridshell, *size, orders=orders, locking=locking, segmentation=found, language=language)
+    plan = plan_of(gridshell, *size, orders=orders, locking=locking, segmentation=found)
     flat = {shell.mark: flat_state(shell) for shell in gridshell.shells if shell.studs}
     lying = (
         finding
@@ -75,5 +73,5 @@ def planned_of(
         for finding in flat_findings(shell, flat[shell.mark], gridshell.timber)
     )
     plan = replace(plan, findings=(*plan.findings, *lying))
-    down = disassembly_of(gridshell, *size, orders=orders, segmentation=found, language=language)
+    down = disassembly_of(gridshell, *size, orders=orders, segmentation=found)
     return Planned(plan, scheduled(plan), orders, flat, locking, found, down, scheduled(down))

@@ -8,17 +8,11 @@ from math import ceil
 
 import networkx as nx
 
-from aag_cad.files import csv_text
 from assembly.base.errors import PlanError
+from assembly.base.phases import PHASE
 from assembly.base.steps import Plan
 
 MINUTES_PER_HOUR = 60
-# A shell in slings is not left for the night.
-UNBROKEN = ("hoist", "divide", "stand", "splice", "ridges", "open ridges", "lift off", "hang", "lower")
-SCHEDULE_HEADER = (
-    "number", "step", "phase", "shell", "title", "people", "minutes", "start_minute", "end_minute", "start_day",
-    "end_day", "slack_minutes", "critical", "predecessors",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -171,7 +165,7 @@ def _starts(plan: Plan, graph: "nx.DiGraph[str]", minutes: Mapping[str, int], pe
         length, crew = minutes[step], by_id[step].crew
         earliest = max((starts[before] + minutes[before] for before in graph.predecessors(step)), default=0)
         start = _first_fit(times, free, earliest, length, crew)
-        while by_id[step].phase in UNBROKEN and start % day > 0 and start % day + length > day:
+        while PHASE[by_id[step].phase].unbroken and start % day > 0 and start % day + length > day:
             start = _first_fit(times, free, (start // day + 1) * day, length, crew)
         if length:
             _take(times, free, start, start + length, crew)
@@ -228,23 +222,3 @@ def people_curve(schedule: Schedule) -> tuple[tuple[int, int], ...]:
         if not curve or curve[-1][1] != busy:
             curve.append((minute, busy))
     return tuple(curve)
-
-
-def schedule_rows(plan: Plan, schedule: Schedule) -> list[tuple[str, ...]]:
-    """Return one line for each step in the order of ``SCHEDULE_HEADER``; days count from 1, predecessors by number."""
-    numbers = {step.id: step.number for step in plan.steps}
-    rows: list[tuple[str, ...]] = []
-    for step, when in zip(plan.steps, schedule.steps, strict=True):
-        first = when.start_minute // schedule.day_minutes + 1
-        last = max(first, ceil(when.end_minute / schedule.day_minutes))
-        figures = (when.people, when.end_minute - when.start_minute, when.start_minute, when.end_minute)
-        rows.append((
-            str(step.number), step.id, step.phase, step.shell, step.title, *map(str, figures), str(first), str(last),
-            str(when.slack), "yes" if when.critical else "no", " ".join(str(numbers[b]) for b in step.predecessors),
-        ))  # fmt: skip
-    return rows
-
-
-def schedule_csv(plan: Plan, schedule: Schedule) -> str:
-    """Return the schedule as CSV: one header line, LF, steps in their order, times in minutes of work."""
-    return csv_text(SCHEDULE_HEADER, schedule_rows(plan, schedule))

@@ -1,47 +1,28 @@
 """The work by which one shell is put together (paper section 3.2): beams, flat layout, hoisting, fixing."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import chain, groupby
 
-from aag_cad.language import Figure, Language, say
+from aag_cad.language import Text, text
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import short_mark
-from aag_cad.parts.model import Shell
-from assembly.base.locking_order import LockingOrder
+from aag_cad.parts.model import Gridshell, Shell
+from assembly.base.locking_order import LockingOrder, LockingStep
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.part_groups import Kit, shell_kit
-from assembly.base.steps import Phase
+from assembly.base.phases import Phase
+from assembly.base.steps import StepProp
 from assembly.laying.order import FlatOrder, groups_of, row_groups
+from assembly.plan.step_cards import Fasteners, card, fasteners_by_kind
+from assembly.plan.work import EVERYONE, PAIR, Work, all_of, props_under
 
 BEAMS_A_STEP = 4
 LAID_A_STEP = 7
 STUDS_A_STEP = 24
 PAIRS_A_STEP = 2
-PAIR = 2
-EVERYONE = 1000
 
 _LAYING: dict[str, Phase] = {"A1": "lay A1", "G": "lay G", "A2": "lay A2"}
-
-
-@dataclass(frozen=True)
-class Work:
-    """What a step does, before it has its number, its words and its crew: see ``assembly.base.steps.Step``.
-
-    ``notes`` are instructions of its own, after those of its phase.
-    """
-
-    id: str
-    phase: Phase
-    title: str
-    after: tuple[str, ...]
-    marks: tuple[str, ...] = ()
-    assemblies: tuple[str, ...] = ()
-    least_crew: int = 1
-    below: str = ""
-    props: tuple[str, ...] = ()
-    extras: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -51,15 +32,12 @@ class _Task:
     shell: Shell
     kit: Kit
     order: FlatOrder
-    language: Language
+    fasteners: Fasteners
 
-    def say(self, key: str, **figures: Figure) -> str:
-        """Return a title or a phrase of ``words/steps.toml``."""
-        return say(self.language, f"steps.{key}", **figures)
-
-
-def _all_of(groups: Iterable[Sequence[str]]) -> tuple[str, ...]:
-    return tuple(chain.from_iterable(groups))
+    def work(self, name: str, phase: Phase, title: Text, *, told: str = "", below: Text | None = None) -> Work:
+        """Return a piece of work on the shell that as yet adds nothing and waits for nothing."""
+        mark = self.shell.mark
+        return Work(f"{mark}.{name}", phase, title, card(phase, self.fasteners, told=told, below=below), mark)
 
 
 def _prefabrication(task: _Task) -> Iterator[Work]:
@@ -68,14 +46,8 @@ def _prefabrication(task: _Task) -> Iterator[Work]:
     runs = ([unit for unit in run if unit in beams] for run in task.order.runs)
     groups = chain.from_iterable(groups_of(run, BEAMS_A_STEP) for run in runs)
     for i, group in enumerate(groups, start=1):
-        yield Work(
-            f"{task.shell.mark}.make.{i}",
-            "prefabricate",
-            task.say("make.title", marks=joined_ranges(group)),
-            after=(),
-            marks=_all_of(beams[beam] for beam in group),
-            least_crew=PAIR,
-        )
+        work = task.work(f"make.{i}", "prefabricate", text("steps.make.title", marks=joined_ranges(group)))
+        yield replace(work, marks=all_of(beams[beam] for beam in group), least_crew=PAIR)
 
 
 def _laying(task: _Task, made: Mapping[str, str]) -> Iterator[Work]:
@@ -87,16 +59,14 @@ def _laying(task: _Task, made: Mapping[str, str]) -> Iterator[Work]:
     for i, group in enumerate(groups, start=1):
         family = laid[group[0]].family
         beams = tuple(unit for unit in group if unit in task.kit.beams)
-        work = Work(
-            f"{task.shell.mark}.lay.{i}",
-            _LAYING[family],
-            task.say("lay.beams" if beams else "lay.geodesics", marks=joined_ranges(group)),
+        title = text("steps.lay.beams" if beams else "steps.lay.geodesics", marks=joined_ranges(group))
+        work = task.work(f"lay.{i}", _LAYING[family], title, below=text(f"steps.below.{family}"))
+        yield replace(
+            work,
             after=(*dict.fromkeys(made[beam] for beam in beams), *before),
             marks=tuple(unit for unit in group if unit not in task.kit.beams),
             assemblies=beams,
-            below=task.say(f"below.{family}"),
         )
-        yield work
         before = (work.id,)
 
 
@@ -104,26 +74,17 @@ def _sliding(task: _Task, laid: str) -> Iterator[Work]:
     """Yield the sliding in of planks that are woven between others, one after the other."""
     lengths = {plank.mark: plank.blank.length for plank in task.shell.planks}
     for i, slide in enumerate(task.order.slides, start=1):
-        free = task.say("slide.open") if slide.free == float("inf") else f"{slide.free:.0f} mm"
-        way = task.say(
-            "slide.way",
+        way = text(
+            "steps.slide.way",
             unit=short_mark(slide.unit),
-            end=task.say(f"slide.{slide.end}"),
+            end=text(f"steps.slide.{slide.end}"),
             count=len(slide.crossings),
             joints=", ".join(short_mark(joint) for joint in slide.crossings),
             needed=lengths[slide.unit],
-            free=free,
+            free=text("steps.slide.open") if slide.free == float("inf") else f"{slide.free:.0f} mm",
         )
-        work = Work(
-            f"{task.shell.mark}.slide.{i}",
-            "slide",
-            task.say("slide.title", marks=joined_ranges((slide.unit,))),
-            after=(laid,),
-            marks=(slide.unit,),
-            least_crew=PAIR,
-            notes=(way,),
-        )
-        yield work
+        work = task.work(f"slide.{i}", "slide", text("steps.slide.title", marks=joined_ranges((slide.unit,))))
+        yield replace(work, after=(laid,), marks=(slide.unit,), least_crew=PAIR, notes=(way,))
         laid = work.id
 
 
@@ -131,17 +92,11 @@ def _setting(task: _Task, laid: str) -> Iterator[Work]:
     """Yield the setting of studs, row by row from the foot, with their bolts."""
     first, before = 1, laid
     for i, rows in enumerate(row_groups(task.order.rows, STUDS_A_STEP), start=1):
-        last, studs = first + len(rows) - 1, _all_of(rows)
-        key = "stud.row" if last == first else "stud.rows"
-        work = Work(
-            f"{task.shell.mark}.stud.{i}",
-            "studs",
-            task.say(key, marks=joined_ranges(studs), first=first, last=last),
-            after=(before,),
-            marks=_all_of((stud, *task.kit.studs[stud]) for stud in studs),
-            least_crew=PAIR,
-        )
-        yield work
+        last, studs = first + len(rows) - 1, all_of(rows)
+        key = "steps.stud.row" if last == first else "steps.stud.rows"
+        work = task.work(f"stud.{i}", "studs", text(key, marks=joined_ranges(studs), first=first, last=last))
+        marks = all_of((stud, *task.kit.studs[stud]) for stud in studs)
+        yield replace(work, after=(before,), marks=marks, least_crew=PAIR)
         first, before = last + 1, work.id
 
 
@@ -154,47 +109,46 @@ def _locking_groups(kit: Kit, locking: LockingOrder | None) -> tuple[tuple[str, 
     upper = tuple(mark for mark in kit.edges if mark not in kit.lower_edges)
     listed = [step.marks for step in locking.steps] if locking else [kit.lower_edges, upper]
     groups = [tuple(mark for mark in marks if mark in kit.edges or mark in flat) for marks in listed]
-    done = _all_of(groups)
+    done = all_of(groups)
     return (*(group for group in groups if group), *((mark,) for mark in flat if mark not in done))
 
 
-def _props_before(locking: LockingOrder | None, fixed: Sequence[str]) -> tuple[str, ...]:
+def _props_before(locking: LockingOrder | None, fixed: Sequence[str]) -> tuple[StepProp, ...]:
     """Return the props that a shell needs before some planks are fixed: those of the hoists and against its sag."""
     if locking is None:
         return ()
     first = next(i for i, step in enumerate(locking.steps) if set(step.marks) & set(fixed))
-    return (*locking.hoists, *(prop.joint for prop in locking.steps[first - 1].props))
+    return _props_after(locking, locking.steps[first - 1])
 
 
-def _edging(task: _Task, marks: tuple[str, ...], before: str, props: tuple[str, ...]) -> Work:
+def _props_after(locking: LockingOrder, state: LockingStep) -> tuple[StepProp, ...]:
+    return props_under((*locking.hoists, *(prop.joint for prop in state.props)), locking.shell)
+
+
+def _edging(task: _Task, edges: tuple[str, ...], before: str, locking: LockingOrder | None) -> Work:
     """Return the pushing in of the lower or the upper edge planks, with their screws."""
-    name = "lower" if marks[0] in task.kit.lower_edges else "upper"
-    return Work(
-        f"{task.shell.mark}.edge.{name}",
-        "edge planks",
-        task.say(f"edge.{name}" if len(marks) == 1 else f"edge.{name}s", marks=joined_ranges(marks)),
-        after=(before,),
-        marks=_all_of((mark, *task.kit.edges[mark]) for mark in marks),
-        least_crew=2 * PAIR,
-        props=props,
-    )
+    name = "lower" if edges[0] in task.kit.lower_edges else "upper"
+    title = text(f"steps.edge.{name}" if len(edges) == 1 else f"steps.edge.{name}s", marks=joined_ranges(edges))
+    marks = all_of((mark, *task.kit.edges[mark]) for mark in edges)
+    told = "" if index_of(task.shell).straps.keys() & set(marks) else "edge planks alone"
+    work = task.work(f"edge.{name}", "edge planks", title, told=told)
+    props = _props_before(locking, edges)
+    return replace(work, after=(before,), marks=marks, least_crew=2 * PAIR, props=props)
 
 
 def _fixing(
     task: _Task, number: int, groups: Sequence[tuple[str, ...]], before: str, locking: LockingOrder | None
 ) -> Work:
     """Return the driving of the screws of some groups of geodesics."""
-    kit, every = task.kit, _all_of(groups)
-    turns = task.say("fix.then").join(joined_ranges(group) for group in groups)
-    return Work(
-        f"{task.shell.mark}.fix.{number}",
-        "fix geodesics",
-        task.say("fix.title", marks=joined_ranges(every)),
+    kit, every = task.kit, all_of(groups)
+    turns = tuple(joined_ranges(group) for group in groups)
+    return replace(
+        task.work(f"fix.{number}", "fix geodesics", text("steps.fix.title", marks=joined_ranges(every))),
         after=(before,),
-        marks=_all_of(screws[mark] for screws in (kit.outside, kit.inside) for mark in every),
+        marks=all_of(screws[mark] for screws in (kit.outside, kit.inside) for mark in every),
         least_crew=PAIR,
         props=_props_before(locking, every),
-        notes=(task.say("fix.order", groups=turns),) if locking else (),
+        notes=(text("steps.fix.order", groups=turns),) if locking else (),
     )
 
 
@@ -206,19 +160,17 @@ def _locking(task: _Task, before: str, locking: LockingOrder | None) -> Iterator
         size = 1 if edges else PAIRS_A_STEP
         for some in (groups[i : i + size] for i in range(0, len(groups), size)):
             number += not edges
-            if edges:
-                work = _edging(task, some[0], before, _props_before(locking, some[0]))
-            else:
-                work = _fixing(task, number, some, before, locking)
+            work = _edging(task, some[0], before, locking) if edges else _fixing(task, number, some, before, locking)
             yield work
             before = work.id
-    name, props = task.shell.mark, locking.hoists if locking else ()
-    title = task.say("tighten.title", shell=name)
-    yield Work(f"{name}.tighten", "tighten", title, after=(before,), least_crew=PAIR, props=props)
+    name, props = task.shell.mark, props_under(locking.hoists, locking.shell) if locking else ()
+    told = "" if task.fasteners.get("ridge") else "tighten alone"
+    work = task.work("tighten", "tighten", text("steps.tighten.title", shell=name), told=told)
+    yield replace(work, after=(before,), least_crew=PAIR, props=props)
 
 
 def shell_works(
-    shell: Shell, order: FlatOrder, locking: LockingOrder | None = None, language: Language = "en"
+    gridshell: Gridshell, shell: Shell, order: FlatOrder, locking: LockingOrder | None = None
 ) -> tuple[Work, ...]:
     """Return the work that makes one stiff shell laid out in a flat order, in an order in which it can be done.
 
@@ -226,15 +178,14 @@ def shell_works(
     that it proposes; without one, edge planks first, then the geodesics in the order of their marks. PlanError if a
     part belongs to no joint.
     """
-    task = _Task(shell, shell_kit(shell), order, language)
-    name = shell.mark
+    task, name = _Task(shell, shell_kit(shell), order, fasteners_by_kind(gridshell, (shell,))), shell.mark
     making = list(_prefabrication(task))
     made = {beam: work.id for beam, marks in task.kit.beams.items() for work in making if marks[0] in work.marks}
     laying = list(_laying(task, made))
     sliding = list(_sliding(task, laying[-1].id))
     setting = list(_setting(task, (*laying, *sliding)[-1].id))
     flat = (*making, *laying, *sliding, *setting)
-    props = (*locking.hoists, *(prop.joint for prop in locking.steps[0].props)) if locking else ()
-    title = task.say("hoist.title", shell=name)
-    hoist = Work(f"{name}.hoist", "hoist", title, (flat[-1].id,), assemblies=(name,), least_crew=EVERYONE, props=props)
+    props = _props_after(locking, locking.steps[0]) if locking else ()
+    hoist = task.work("hoist", "hoist", text("steps.hoist.title", shell=name))
+    hoist = replace(hoist, after=(flat[-1].id,), assemblies=(name,), least_crew=EVERYONE, props=props)
     return (*flat, hoist, *_locking(task, hoist.id, locking))

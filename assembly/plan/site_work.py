@@ -1,33 +1,36 @@
 """The work on site: feet, standing shells, segments joined again, ridges, cover (paper section 3.2)."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from aag_cad.language import Figure, Language, say
+from aag_cad.language import Text, text
 from aag_cad.parts.marks import joint_of, shell_of, shells_of, short_mark
 from aag_cad.parts.model import Gridshell, Shell
 from assembly.base.locking_order import LockingOrder
-from assembly.base.mark_ranges import joined_ranges
 from assembly.base.part_groups import Kit, shell_kit
+from assembly.base.phases import Phase
 from assembly.base.segments import Segment, Segmentation, segments_of
+from assembly.base.steps import PropsAway
 from assembly.plan.parting import brace_extras, seam_extras
-from assembly.plan.shell_work import EVERYONE, PAIR, Work
+from assembly.plan.step_cards import Fasteners, card, fasteners_by_kind
+from assembly.plan.work import EVERYONE, PAIR, Work, props_under
 from assembly.transport.seams import Seam, foot_joints, standing_order
 
 
 @dataclass(frozen=True)
 class _Site:
-    """What the work on site is made from."""
+    """What the work on site is made from; ``stiff`` are the ids of the works after which each shell can travel."""
 
     gridshell: Gridshell
+    stiff: Mapping[str, str]
     segmentation: Segmentation | None
-    locking: dict[str, LockingOrder]
-    language: Language
+    locking: Mapping[str, LockingOrder]
+    fasteners: Fasteners
 
-    def say(self, key: str, **figures: Figure) -> str:
-        """Return a title or a phrase of ``words/site.toml``."""
-        return say(self.language, f"site.{key}", **figures)
+    def work(self, name: str, phase: Phase, title: Text, told: str = "") -> Work:
+        """Return a piece of work on site that as yet adds nothing and waits for nothing."""
+        return Work(f"site.{name}", phase, title, card(phase, self.fasteners, told=told))
 
 
 def ridge_pairs(gridshell: Gridshell) -> tuple[tuple[str, str], ...]:
@@ -43,29 +46,29 @@ def ridge_pairs(gridshell: Gridshell) -> tuple[tuple[str, str], ...]:
 
 
 def _crown_props(site: _Site, shell: Shell) -> tuple[str, ...]:
-    """Return the props that a stiff shell needs until it leans on its neighbours, by the locking order."""
+    """Return the joints of the props that a stiff shell needs until it leans on its neighbours, by locking order."""
     order = site.locking.get(shell.mark)
     return tuple(prop.joint for prop in order.released.props) if order else ()
 
 
-def _prop_notes(site: _Site, shell: Shell) -> tuple[str, ...]:
+def _prop_notes(site: _Site, shell: Shell) -> tuple[Text, ...]:
     order = site.locking.get(shell.mark)
     if order is None or not order.released.props:
         return ()
     at = short_mark(order.released.at)
-    return (site.say("stand.props", sag=order.released.displacement, joint=at),)
+    return (text("site.stand.props", sag=order.released.displacement, joint=at),)
 
 
-def _standing_notes(site: _Site, segment: Segment, beside: Sequence[Seam], others: Sequence[str]) -> tuple[str, ...]:
+def _standing_notes(segment: Segment, beside: Sequence[Seam], others: Sequence[str]) -> tuple[Text, ...]:
     """Return how a segment is set down beside those that stand."""
     if not beside:
-        after = (site.say("stand.first", segment=segment.name, others=", ".join(others)),)
-        return (*after, site.say("stand.alone", segment=segment.name))
+        after = text("site.stand.first", segment=segment.name, others=tuple(others))
+        return after, text("site.stand.alone", segment=segment.name)
     names = [next(iter({seam.keeper, seam.bare} - {segment.name})) for seam in beside]
     gaps = [round(seam.gap) for seam in beside]
     if len(beside) > 1:
-        return (site.say("stand.closing", b=names[0], c=names[1], gap=sum(gaps)),)
-    return (site.say("stand.beside", b=names[0], gap=gaps[0], line=short_mark(beside[0].line)),)
+        return (text("site.stand.closing", b=names[0], c=names[1], gap=sum(gaps)),)
+    return (text("site.stand.beside", b=names[0], gap=gaps[0], line=short_mark(beside[0].line)),)
 
 
 def _split_standing(shell: Shell, kit: Kit, own: Sequence[Segment]) -> dict[str, tuple[str, ...]]:
@@ -85,20 +88,20 @@ def _segment_works(site: _Site, shell: Shell, kit: Kit, feet: str) -> Iterator[W
     under = {joint: next((s.name for s in own if joint in s.parts), own[0].name) for joint in crown}
     open_seams = Counter(name for _, beside in order for seam in beside for name in (seam.keeper, seam.bare))
     named = {segment.name: segment for segment in own}
-    before: tuple[str, ...] = (feet, f"{shell.mark}.divide")
+    before: tuple[str, ...] = (feet, site.stiff[shell.mark])
     for i, (segment, beside) in enumerate(order):
         standing = bolts[segment.name]
-        notes = _standing_notes(site, segment, beside, [other.name for other in own[i + 1 :]])
+        notes = _standing_notes(segment, beside, [other.name for other in own[i + 1 :]])
         held = tuple(joint for joint in crown if under[joint] == segment.name)
-        stand = Work(
-            f"site.stand.{segment.name}",
-            "stand",
-            site.say("stand.segment" if standing else "stand.raised", segment=segment.name),
+        title = text("site.stand.segment" if standing else "site.stand.raised", segment=segment.name)
+        stand = replace(
+            site.work(f"stand.{segment.name}", "stand", title, "stand segment" if standing else "raise segment"),
             after=before,
             marks=standing,
             assemblies=(shell.mark,),
+            segments=(segment.name,),
             least_crew=EVERYONE,
-            props=tuple(dict.fromkeys((*segment.props, *held))),
+            props=props_under((*segment.props, *held), segment.name),
             notes=(*notes, *(_prop_notes(site, shell) if held else ())),
         )
         yield stand
@@ -106,15 +109,15 @@ def _segment_works(site: _Site, shell: Shell, kit: Kit, feet: str) -> Iterator[W
         for seam in beside:
             open_seams.subtract((seam.keeper, seam.bare))
             whole = [named[name] for name in (seam.keeper, seam.bare) if not open_seams[name]]
-            bare = (extra for other in whole for extra in brace_extras(site.language, other, "splice"))
-            splice = Work(
-                f"site.splice.{seam.keeper}.{seam.bare}",
-                "splice",
-                site.say("splice.title", a=seam.keeper, b=seam.bare, line=short_mark(seam.line)),
+            bare = (extra for other in whole for extra in brace_extras(other, "splice"))
+            title = text("site.splice.title", a=seam.keeper, b=seam.bare, line=short_mark(seam.line))
+            splice = replace(
+                site.work(f"splice.{seam.keeper}.{seam.bare}", "splice", title),
                 after=before,
                 assemblies=(shell.mark,),
+                segments=(seam.keeper, seam.bare),
                 least_crew=2 * PAIR,
-                extras=(*seam_extras(site.language, seam, "splice"), *bare),
+                extras=(*seam_extras(seam, "splice"), *bare),
             )
             yield splice
             before = (splice.id,)
@@ -125,15 +128,14 @@ def _standing(site: _Site, shell: Shell, feet: str) -> tuple[Work, ...]:
     kit = shell_kit(shell)
     if segments_of(site.segmentation, shell.mark):
         return tuple(_segment_works(site, shell, kit, feet))
-    work = Work(
-        f"site.stand.{shell.mark}",
-        "stand",
-        site.say("stand.shell", shell=shell.mark),
-        after=(feet, f"{shell.mark}.tighten"),
+    props, title = props_under(_crown_props(site, shell), shell.mark), text("site.stand.shell", shell=shell.mark)
+    work = replace(
+        site.work(f"stand.{shell.mark}", "stand", title, "" if props else "stand free"),
+        after=(feet, site.stiff[shell.mark]),
         marks=kit.standing,
         assemblies=(shell.mark,),
         least_crew=EVERYONE,
-        props=_crown_props(site, shell),
+        props=props,
         notes=_prop_notes(site, shell),
     )
     return (work,)
@@ -145,11 +147,10 @@ def _props_off(site: _Site, works: tuple[Work, ...]) -> tuple[Work, ...]:
     Props that the finished shell needs by its locking order stay.
     """
     crown = {prop.joint for order in site.locking.values() for prop in order.released.props}
-    props = tuple(dict.fromkeys(joint for work in works for joint in work.props if joint not in crown))
-    if len(works) == 1 or not props:
+    joints = tuple(dict.fromkeys(p.joint for work in works for p in work.props if p.joint not in crown))
+    if len(works) == 1 or not joints:
         return works
-    off = site.say("ridge.props_off", joints=joined_ranges(props))
-    return (*works[:-1], replace(works[-1], extras=(*works[-1].extras, off)))
+    return (*works[:-1], replace(works[-1], extras=(*works[-1].extras, PropsAway(joints))))
 
 
 def _ridges(site: _Site, stood: dict[str, tuple[Work, ...]]) -> Iterator[Work]:
@@ -157,8 +158,8 @@ def _ridges(site: _Site, stood: dict[str, tuple[Work, ...]]) -> Iterator[Work]:
     gridshell = site.gridshell
     before: tuple[str, ...] = ()
     pairs = ridge_pairs(gridshell)
-    props = {mark: tuple(joint for work in works for joint in work.props) for mark, works in stood.items()}
-    every = tuple(dict.fromkeys(joint for joints in props.values() for joint in joints))
+    props = {mark: tuple(prop for work in works for prop in work.props) for mark, works in stood.items()}
+    every = tuple(dict.fromkeys(prop.joint for listed in props.values() for prop in listed))
     for i, (a, b) in enumerate(pairs):
         blades = [blade.mark for blade in gridshell.blades if set(shells_of(blade.mark)) == {a, b}]
         fasteners = [
@@ -168,16 +169,14 @@ def _ridges(site: _Site, stood: dict[str, tuple[Work, ...]]) -> Iterator[Work]:
             for mark in joint.fasteners
         ]
         last = i == len(pairs) - 1
-        work = Work(
-            f"site.ridge.{a}.{b}",
-            "ridges",
-            site.say("ridge.title", a=a, b=b),
+        work = replace(
+            site.work(f"ridge.{a}.{b}", "ridges", text("site.ridge.title", a=a, b=b)),
             after=(*(work.id for mark in (a, b) for work in stood[mark][-1:]), *before),
             marks=(*blades, *fasteners),
             assemblies=(a, b),
             least_crew=2 * PAIR,
             props=tuple(dict.fromkeys((*props[a], *props[b]))),
-            extras=(site.say("ridge.props_off", joints=joined_ranges(every)),) if last and every else (),
+            extras=(PropsAway(every),) if last and every else (),
         )
         yield work
         before = (work.id,)
@@ -185,22 +184,22 @@ def _ridges(site: _Site, stood: dict[str, tuple[Work, ...]]) -> Iterator[Work]:
 
 def site_works(
     gridshell: Gridshell,
+    stiff: Mapping[str, str],
     segmentation: Segmentation | None = None,
-    language: Language = "en",
     locking: Sequence[LockingOrder] = (),
 ) -> tuple[Work, ...]:
     """Return the work that makes the gridshell of stiff shells, in an order in which it can be done.
+
+    ``stiff`` are the ids of the works after which each shell, or what it is parted into, can travel.
 
     A shell that ``segmentation`` cuts stands segment by segment, each joined to its neighbours (``standing_order``).
     Props of ``locking`` under the finished shells (``LockingOrder.released``) stand before a shell leaves its slings,
     and stay until the last ridge is joined.
     """
-    site = _Site(gridshell, segmentation, {order.shell: order for order in locking}, language)
-    feet = Work(
-        "site.feet",
-        "feet",
-        site.say("feet.title"),
-        after=(),
+    fasteners = fasteners_by_kind(gridshell, gridshell.shells)
+    site = _Site(gridshell, stiff, segmentation, {order.shell: order for order in locking}, fasteners)
+    feet = replace(
+        site.work("feet", "feet", text("site.feet.title")),
         marks=tuple(mark for shell in gridshell.shells for mark in shell_kit(shell).feet),
         least_crew=PAIR,
     )
@@ -209,7 +208,12 @@ def site_works(
     standing = tuple(work for works in stood.values() for work in (works if ridges else _props_off(site, works)))
     last = tuple(work.id for work in ridges[-1:] or (works[-1] for works in stood.values()))
     covering = tuple(
-        Work(f"site.cover.{mark}", "cover", site.say("cover.title", shell=mark), last, kit.cover, least_crew=PAIR)
+        replace(
+            site.work(f"cover.{mark}", "cover", text("site.cover.title", shell=mark)),
+            after=last,
+            marks=kit.cover,
+            least_crew=PAIR,
+        )
         for mark, kit in ((shell.mark, shell_kit(shell)) for shell in gridshell.shells)
         if kit.cover
     )

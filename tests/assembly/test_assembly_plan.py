@@ -12,7 +12,8 @@ from aag_cad.parts.model import Bolt, Gridshell, Part, all_joints, all_parts, ri
 from assembly.base.errors import PlanError
 from assembly.base.steps import Plan, Step
 from assembly.checks.plan import check_plan
-from assembly.plan.assembly_plan import piece_weights, plan_of
+from assembly.plan.assembly_plan import plan_of
+from assembly.plan.piece_weights import piece_weights
 from assembly.plan.site_work import site_works
 
 PEOPLE, LIFT = 4, 25.0

@@ -10,7 +10,8 @@ import pytest
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.parts.model import Blank, CrossSection, Gridshell, Plank, Shell, all_parts
 from assembly.base.errors import PlanError
-from assembly.base.steps import DOWN_PHASES, Plan
+from assembly.base.phases import DOWN_PHASES
+from assembly.base.steps import Plan
 from assembly.checks.disassembly import check_disassembly
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.disassembly import disassembly_of, stored_energy

@@ -8,7 +8,8 @@ import pytest
 
 from aag_cad.design_making import Minutes
 from aag_cad.parts.model import Gridshell
-from assembly.base.steps import PHASES, Phase, Plan, Step
+from assembly.base.phases import PHASES, Phase
+from assembly.base.steps import Plan, Step
 from assembly.booklet.gantt import HEIGHT, WIDTH, gantt_svg
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.disassembly import disassembly_of

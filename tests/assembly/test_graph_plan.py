@@ -17,11 +17,11 @@ from aag_cad.parts.model import Gridshell
 from assembly.base.crew import Crew, lifting_findings
 from assembly.base.errors import PlanError
 from assembly.base.steps import Plan, Step
+from assembly.booklet.plan_file import plan_json
 from assembly.checks.graph_plan import check_graph_plan
 from assembly.graph.files import graph_text, read_graph
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import interlacing
-from assembly.plan.assembly_plan import plan_json
 from assembly.plan.graph_plan import JOINTS_A_STEP, LAID_A_STEP, graph_durations, graph_plan
 from assembly.plan.schedule import people_curve, schedule_of
 

@@ -15,6 +15,7 @@ from assembly.base.errors import PlanError
 from assembly.base.steps import Plan, Step
 from assembly.booklet.calendar import calendar_bytes, working_day, write_calendar
 from assembly.plan.assembly_plan import plan_of
+from assembly.plan.clock import working_day
 from assembly.plan.durations import step_minutes
 from assembly.plan.schedule import Schedule, schedule_of
 

@@ -15,14 +15,16 @@ from aag_cad.parts.products import product_name
 from aag_cad.resources import template
 from assembly.base.locking_order import LockingOrder, LockingStep, Prop
 from assembly.base.names import part_name, phase_name
-from assembly.base.steps import DOWN_PHASES, PHASES, UP_PHASES, Phase, Plan
+from assembly.base.phases import DOWN_PHASES, PHASES, UP_PHASES, Phase
+from assembly.base.steps import Plan
 from assembly.booklet.cards import qr_text, step_card, totals
 from assembly.booklet.gantt import gantt_svg
 from assembly.drawing.joint_sections import block_section_svg, node_section_svg
 from assembly.drawing.steel_sections import blade_section_svg, foot_section_svg, strap_section_svg
 from assembly.pictures.locking_chart import locking_svg, locking_table
-from assembly.plan.assembly_plan import piece_weights, plan_of
+from assembly.plan.assembly_plan import plan_of
 from assembly.plan.disassembly import disassembly_of
+from assembly.plan.piece_weights import piece_weights
 from assembly.plan.schedule import schedule_of
 from assembly.plan.wording import fasteners_by_kind, wording
 

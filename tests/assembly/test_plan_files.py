@@ -12,8 +12,10 @@ from aag_cad.findings import Finding
 from aag_cad.language import LANGUAGES
 from aag_cad.parts.model import Gridshell
 from assembly.base.errors import PlanError
-from assembly.base.steps import PHASES, Plan, Step
-from assembly.plan.assembly_plan import plan_json, plan_of, read_plan
+from assembly.base.phases import PHASES
+from assembly.base.steps import Plan, Step
+from assembly.booklet.plan_file import plan_json, read_plan
+from assembly.plan.assembly_plan import plan_of
 
 texts = st.text(max_size=12)
 listed = st.lists(texts, max_size=4).map(tuple)

@@ -16,17 +16,10 @@ from aag_cad.errors import DesignError
 from aag_cad.parts.model import Gridshell
 from assembly.base.errors import PlanError
 from assembly.base.steps import Plan, Step
+from assembly.booklet.schedule_table import SCHEDULE_HEADER, schedule_csv
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.durations import person_minutes, step_minutes, step_works
-from assembly.plan.schedule import (
-    SCHEDULE_HEADER,
-    UNBROKEN,
-    critical_path,
-    lower_bound,
-    people_curve,
-    schedule_csv,
-    schedule_of,
-)
+from assembly.plan.schedule import UNBROKEN, critical_path, lower_bound, people_curve, schedule_of
 
 MINUTES = Minutes.model_validate({})
 

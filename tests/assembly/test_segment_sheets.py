@@ -8,17 +8,16 @@ import pytest
 
 from aag_cad.language import LANGUAGES, Language
 from aag_cad.parts.model import Gridshell
-from assembly.base.segments import Limits, Segmentation
-from assembly.pictures.segment_picture import segment_svg
-from assembly.transport.segment_sheet import (
+from assembly.base.segments import Limits, Segmentation, splices_of
+from assembly.booklet.segment_sheet import (
     SEGMENTS_HEADER,
     SPLICES_HEADER,
     brace_words,
     segment_cards,
     segment_rows,
     splice_rows,
-    splices_of,
 )
+from assembly.pictures.segment_picture import segment_svg
 from assembly.transport.segments import segments
 
 LORRY = Limits(12000.0, 2400.0, 2600.0, 3000.0)

@@ -17,8 +17,9 @@ from assembly.base.steps import Plan, Step
 from assembly.booklet.cards import part_rows, step_card, step_table, totals
 from assembly.booklet.contents import common_of, disassembly_booklet, sequence_booklet
 from assembly.booklet.pdf import booklet_pdf
-from assembly.plan.assembly_plan import piece_weights, plan_of
+from assembly.plan.assembly_plan import plan_of
 from assembly.plan.durations import step_minutes
+from assembly.plan.piece_weights import piece_weights
 from assembly.plan.planned import Planned
 from assembly.plan.schedule import schedule_of
 from assembly.transport.segments import segments

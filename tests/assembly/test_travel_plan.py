@@ -18,10 +18,11 @@ from assembly.base.steps import Plan, Step
 from assembly.checks.disassembly import check_disassembly
 from assembly.checks.plan import check_plan
 from assembly.locking.order import locking_orders
-from assembly.plan.assembly_plan import lifted, piece_weights, plan_of
+from assembly.plan.assembly_plan import lifted, plan_of
 from assembly.plan.disassembly import disassembly_of
 from assembly.plan.durations import step_minutes
 from assembly.plan.parting import divide_works
+from assembly.plan.piece_weights import piece_weights
 from assembly.plan.schedule import schedule_of
 from assembly.plan.site_work import site_works
 from assembly.transport.lifting import margin_inside

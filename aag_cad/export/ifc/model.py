@@ -10,7 +10,7 @@ from aag_cad.export.ifc.joints import write_joints
 from aag_cad.export.ifc.materials import associate_materials
 from aag_cad.export.ifc.options import IfcOptions, IfcSchema, require_known
 from aag_cad.export.ifc.properties import write_fabrication
-from aag_cad.export.ifc.schedule import write_schedule
+from aag_cad.export.ifc.schedule import PlannedWork, write_schedule
 from aag_cad.export.ifc.schemas import known, type_word
 from aag_cad.export.ifc.site import spatial_tree
 from aag_cad.export.ifc.standard_sets import write_product_sets, write_serial_numbers
@@ -21,7 +21,6 @@ from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.model import Frame, Gridshell, Part, Shell, all_joints, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame
 from aag_cad.shop.groups import all_planks, templates_of
-from assembly.base.steps import Step
 
 __all__ = ["IfcOptions", "IfcSchema", "ifc_model", "write_ifc"]
 
@@ -102,7 +101,7 @@ def _write_sets(
     write_serial_numbers(model, planks, elements, groups)
 
 
-def ifc_model(gridshell: Gridshell, steps: Sequence[Step] | None = None, options: IfcOptions | None = None) -> IfcModel:
+def ifc_model(gridshell: Gridshell, work: PlannedWork | None = None, options: IfcOptions | None = None) -> IfcModel:
     """Return the gridshell as an open IFC file; the steps of a plan become a work schedule.
 
     IFC2X3 has no task times: there the steps are only named in the set ``AAG_Assembly``. DesignError if the options do
@@ -119,17 +118,17 @@ def ifc_model(gridshell: Gridshell, steps: Sequence[Step] | None = None, options
     define_types(model, found, elements)
     associate_materials(model, found, elements, gridshell.timber)
     _write_sets(model, gridshell, found, elements)
-    write_assembly_sets(model, parts, elements, steps or ())
+    write_assembly_sets(model, parts, elements, work)
     write_joints(model, all_joints(gridshell), index_of(gridshell).parts, elements)
-    if steps is not None and options.schema != "IFC2X3":
-        write_schedule(model, gridshell, steps, elements)
+    if work is not None and options.schema != "IFC2X3":
+        write_schedule(model, gridshell.name, work, elements)
     return model
 
 
 def write_ifc(
     gridshell: Gridshell,
     path: str | os.PathLike[str],
-    steps: Sequence[Step] | None = None,
+    work: PlannedWork | None = None,
     options: IfcOptions | None = None,
 ) -> None:
     """Write the gridshell, and the steps of its plan as a work schedule; FileError if the file cannot be written.
@@ -137,6 +136,6 @@ def write_ifc(
     The bodies are planks without holes: hole tables are in the property set ``AAG_Fabrication``. DesignError if the
     options do not go together.
     """
-    model = ifc_model(gridshell, steps, options)
+    model = ifc_model(gridshell, work, options)
     with replacing(path) as draft:
         draft.write_text(model.file.to_string(), encoding="utf-8", newline="\n")

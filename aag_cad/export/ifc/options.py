@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
-from aag_cad.design_making import Crew
 from aag_cad.design_sections import Site
 from aag_cad.errors import DesignError
 
@@ -24,10 +23,9 @@ _VIEWS: dict[tuple[IfcSchema, IfcGeometry], str] = {
 
 @dataclass(frozen=True)
 class IfcOptions:
-    """How an IFC file is written: schema, bodies of planks, where it stands, who made it, who puts it together.
+    """How an IFC file is written: schema, bodies of planks, where it stands, who made it.
 
-    ``geometry`` "brep" gives planks and bars B-spline faces in place of triangles. ``crew`` gives the people, their
-    hours, the minutes that their work takes and the first day.
+    ``geometry`` "brep" gives planks and bars B-spline faces in place of triangles.
     """
 
     schema: IfcSchema = "IFC4"
@@ -35,7 +33,6 @@ class IfcOptions:
     site: Site | None = None
     author: str = ""
     organisation: str = ""
-    crew: Crew | None = None
 
 
 def require_known(options: IfcOptions) -> None:

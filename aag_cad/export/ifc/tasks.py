@@ -1,15 +1,12 @@
-"""When the steps of a plan can be done, in minutes of work and as dates, and which of them are critical."""
+"""When the steps of a plan can be done, in minutes of work, and which of them are critical."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import date, datetime, time, timedelta
 
 import networkx as nx
 
 from assembly.base.steps import Plan
 from assembly.plan.schedule import precedence
-
-_MORNING = time(8, 0)
 
 
 @dataclass(frozen=True)
@@ -66,30 +63,3 @@ def timings(plan: Plan, minutes: Mapping[str, int]) -> dict[str, Timing]:
         )
         for step in plan.steps
     }
-
-
-@dataclass(frozen=True)
-class WorkingTime:
-    """The calendar of the work: the first day, minutes of work a day from 8 o'clock, days a week from Monday on."""
-
-    first: date
-    day_minutes: int
-    days_per_week: int
-
-    def _on(self, working_day: int, minute: int) -> str:
-        """Return a minute of a working day, counted from 0 with the first that is none of the free days."""
-        day = self.first
-        while day.weekday() >= self.days_per_week:
-            day += timedelta(days=1)
-        weeks, rest = divmod(day.weekday() + working_day, self.days_per_week)
-        day += timedelta(days=7 * weeks + rest - day.weekday())
-        return (datetime.combine(day, _MORNING) + timedelta(minutes=minute)).isoformat()
-
-    def start(self, minute: int) -> str:
-        """Return the date and time at which work starts after so many minutes of work."""
-        return self._on(*divmod(minute, self.day_minutes))
-
-    def finish(self, minute: int) -> str:
-        """Return the date and time at which so many minutes of work are done: an evening, not the next morning."""
-        day, rest = divmod(max(minute - 1, 0), self.day_minutes)
-        return self._on(day, min(rest + 1, minute))

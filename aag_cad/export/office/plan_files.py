@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from datetime import date
 from pathlib import Path
 from typing import TypeAlias
 
@@ -11,6 +10,7 @@ import networkx as nx
 from aag_cad.design_making import Crew
 from aag_cad.export.office.tables import write_locking_table, write_segment_tables
 from aag_cad.files import csv_text, write_text
+from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell
 from assembly.base.segments import Limits
 from assembly.base.steps import Plan
@@ -18,13 +18,15 @@ from assembly.booklet.calendar import write_calendar
 from assembly.booklet.gantt import gantt_svg
 from assembly.booklet.graph_page import graph_html
 from assembly.booklet.pdf import write_booklets
+from assembly.booklet.plan_file import graph_pieces, gridshell_pieces, plan_file, plan_json
+from assembly.booklet.schedule_table import schedule_csv
 from assembly.graph.files import graph_json, graphml
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.pictures.laying_plan import laying_rows
 from assembly.pictures.locking_chart import locking_svg
-from assembly.plan.assembly_plan import plan_json
+from assembly.plan.clock import clock_of
 from assembly.plan.planned import Planned
-from assembly.plan.schedule import Schedule, schedule_csv
+from assembly.plan.schedule import Schedule
 from assembly.transport.graph_groups import partition_graph
 
 LAYING_HEADER = ("shell", "mark", "what", "x_mm", "y_mm", "end_x_mm", "end_y_mm")
@@ -38,39 +40,44 @@ class Planning:
     planned: Planned
     gridshell: Gridshell
     crew: Crew
+    language: Language = "en"
 
 
-def write_schedule(plan: Plan, schedule: Schedule, title: str, crew: Crew, folder: Path) -> None:
+def write_schedule(plan: Plan, schedule: Schedule, title: str, crew: Crew, folder: Path, language: Language) -> None:
     """Write the schedule as table and chart and, if the crew has a first working day, as calendar."""
-    write_text(folder / "tables" / "schedule.csv", schedule_csv(plan, schedule))
-    write_text(folder / "schedule.svg", gantt_svg(plan, schedule, title))
-    if crew.start is not None:
-        write_calendar(plan, schedule, date.fromisoformat(crew.start), folder / "schedule.ics", crew.days_per_week)
+    write_text(folder / "tables" / "schedule.csv", schedule_csv(plan, schedule, language))
+    write_text(folder / "schedule.svg", gantt_svg(plan, schedule, title, language))
+    if clock := clock_of(schedule, crew):
+        write_calendar(plan, schedule, clock, folder / "schedule.ics", language)
 
 
 def _laying_table(planning: Planning) -> str:
     """Return where every member and stud lies on the floor, shell by shell, for setting out with tapes."""
-    flat, language = planning.planned.flat, planning.planned.plan.language
+    flat, language = planning.planned.flat, planning.language
     shells = [shell for shell in planning.gridshell.shells if shell.mark in flat]
     rows = ((shell.mark, *row) for shell in shells for row in laying_rows(shell, flat[shell.mark], language))
     return csv_text(LAYING_HEADER, rows)
 
 
 def _write_plan(planning: Planning, folder: Path) -> None:
-    write_text(folder / "plan.json", plan_json(planning.planned.plan))
-    write_text(folder / "disassembly.json", plan_json(planning.planned.down))
+    planned, gridshell, crew = planning.planned, planning.gridshell, planning.crew
+    pieces = gridshell_pieces(gridshell)
+    up = plan_file(planned.plan, planned.schedule, crew, pieces, planned.segmentation)
+    write_text(folder / "plan.json", plan_json(up))
+    down = plan_file(planned.down, planned.down_schedule, crew, pieces, planned.segmentation)
+    write_text(folder / "disassembly.json", plan_json(down))
     write_text(folder / "tables" / "laying.csv", _laying_table(planning))
 
 
 def _write_schedule(planning: Planning, folder: Path) -> None:
     planned = planning.planned
-    write_schedule(planned.plan, planned.schedule, planning.gridshell.title, planning.crew, folder)
+    write_schedule(planned.plan, planned.schedule, planning.gridshell.title, planning.crew, folder, planning.language)
 
 
 def _write_locking(planning: Planning, folder: Path) -> None:
     orders = planning.planned.locking
     write_locking_table(orders, folder / "tables" / "locking.csv")
-    write_text(folder / "locking.svg", locking_svg(orders[0], planning.planned.plan.language))
+    write_text(folder / "locking.svg", locking_svg(orders[0], planning.language))
 
 
 def _write_segments(planning: Planning, folder: Path) -> None:
@@ -79,7 +86,7 @@ def _write_segments(planning: Planning, folder: Path) -> None:
 
 
 def _write_sequence(planning: Planning, folder: Path) -> None:
-    write_booklets(planning.planned, planning.gridshell, folder)
+    write_booklets(planning.planned, planning.gridshell, folder, planning.language)
 
 
 def _write_graph(planning: Planning, folder: Path) -> None:
@@ -111,9 +118,11 @@ def write_graph_groups(graph: "nx.MultiGraph[str]", limits: Limits, folder: Path
     write_text(folder / "tables" / "segments.csv", csv_text(GROUPS_HEADER, rows))
 
 
-def write_graph_plan(graph: "nx.MultiGraph[str]", plan: Plan, schedule: Schedule, crew: Crew, folder: Path) -> None:
+def write_graph_plan(
+    graph: "nx.MultiGraph[str]", plan: Plan, schedule: Schedule, crew: Crew, folder: Path, language: Language
+) -> None:
     """Write the files of the plan of any graph of parts: plan, schedule, page for phones, and the graph as GraphML."""
-    write_text(folder / "plan.json", plan_json(plan))
-    write_schedule(plan, schedule, plan.name, crew, folder)
-    write_text(folder / "sequence.html", graph_html(plan, schedule, graph))
+    write_text(folder / "plan.json", plan_json(plan_file(plan, schedule, crew, graph_pieces(graph))))
+    write_schedule(plan, schedule, plan.name, crew, folder, language)
+    write_text(folder / "sequence.html", graph_html(plan, schedule, graph, language))
     write_text(folder / "graph.graphml", graphml(graph))

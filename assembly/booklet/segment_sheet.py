@@ -5,10 +5,10 @@ from collections.abc import Iterator, Sequence
 from typing import TypeAlias
 
 from aag_cad.families import FAMILIES
-from aag_cad.language import Figure, Language, say, says
+from aag_cad.language import Figure, Language, Text, printed, say, says, text
 from aag_cad.parts.marks import parse_mark, short_mark
 from assembly.base.mark_ranges import joined_ranges
-from assembly.base.segments import Brace, Limits, Segment, Segmentation, Splice
+from assembly.base.segments import Brace, Limits, Segment, Segmentation, Splice, splices_of
 
 SEGMENTS_HEADER = (
     "segment", "shell", "geodesics", "parts", "plank_pieces", "mass_kg", "timber_kg", "steel_kg", "centre_x_mm",
@@ -84,11 +84,10 @@ def _say(language: Language, key: str, **figures: Figure) -> str:
     return say(language, f"segments.{key}", **figures)
 
 
-def brace_words(brace: Brace, language: Language = "en") -> str:
+def brace_text(brace: Brace) -> Text:
     """Return what a brace is, from where to where, and how long."""
-    ends = {"start": short_mark(brace.start), "end": short_mark(brace.end)}
-    kind = _say(language, f"brace.{brace.kind}")
-    return _say(language, "brace.line", kind=kind, length=_number(brace.length), **ends)
+    kind, start, end = text(f"segments.brace.{brace.kind}"), short_mark(brace.start), short_mark(brace.end)
+    return text("segments.brace.line", kind=kind, start=start, end=end, length=brace.length)
 
 
 def _room(segment: Segment, limits: Limits, language: Language) -> str:
@@ -122,19 +121,6 @@ def splice_words(splice: Splice, language: Language = "en") -> str:
     joint = short_mark(splice.joint) if splice.joint else ""
     figures: dict[str, Figure] = {"length": _number(splice.length), "bolts": splice.bolts, "diameter": splice.diameter}
     return _say(language, f"value.{splice.kind}", joint=joint, **figures)
-
-
-def splices_of(plan: Segmentation, segment: Segment) -> tuple[tuple[Splice, ...], tuple[Splice, ...]]:
-    """Return the splices of a segment: those along its own geodesics, and those along its neighbours'."""
-    planks = {piece.plank for piece in segment.pieces}
-    cut = [s for s in plan.splices if any(c.plank in planks and _touches(segment, c.plank, c.station) for c in s.cuts)]
-    own = set(segment.geodesics)
-    return tuple(s for s in cut if s.line in own), tuple(s for s in cut if s.line not in own)
-
-
-def _touches(segment: Segment, plank: str, station: float) -> bool:
-    """Return whether a segment has the piece of a plank on one side of a cut."""
-    return any(piece.plank == plank and station in (piece.start, piece.end) for piece in segment.pieces)
 
 
 def segment_cards(plan: Segmentation, language: Language = "en") -> list[Card]:
@@ -196,7 +182,7 @@ def _card(plan: Segmentation, segment: Segment, language: Language) -> Card:
         "title": _say(language, "card.whole" if whole else "card.title", segment=segment.name),
         "facts": [[_say(language, f"card.{key}"), value] for key, value in _facts(plan, segment, language) if value],
         "braces_title": _say(language, "card.braces"),
-        "braces": [brace_words(brace, language) for brace in segment.braces],
+        "braces": [printed(brace_text(brace), language) for brace in segment.braces],
         "splices_title": _say(language, "card.splices"),
         "splices_head": list(says(language, "segments.card.table")),
         "splices": rows,
