@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from aag_cad.findings import Finding
-from aag_cad.language import Text
+from aag_cad.language import Sentence, Text
 from assembly.base.phases import PHASE, Phase
 from assembly.base.segments import Brace
 
@@ -113,7 +113,7 @@ class Step:
     number: int
     id: str
     phase: Phase
-    title: Text
+    title: Sentence
     shell: str
     marks: tuple[str, ...]
     assemblies: tuple[str, ...]
@@ -122,7 +122,7 @@ class Step:
     gear: bool
     predecessors: tuple[str, ...]
     card: Text
-    notes: tuple[Text, ...] = ()
+    notes: tuple[Sentence, ...] = ()
     held: bool = False
     props: tuple[StepProp, ...] = ()
     extras: tuple[Extra, ...] = ()

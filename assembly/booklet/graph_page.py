@@ -8,13 +8,13 @@ from typing import Any
 import networkx as nx
 import numpy as np
 
-from aag_cad.units import Floats
 from aag_cad.language import Language
-from assembly.booklet.step_words import step_title, step_words
+from aag_cad.units import Floats
 from assembly.base.names import phase_name
 from assembly.base.steps import Plan, Step
 from assembly.booklet.contents import Booklet
 from assembly.booklet.phone_page import filled_page
+from assembly.booklet.step_words import step_title, step_words
 from assembly.booklet.words import booklet_words, finding_lines
 from assembly.drawing.svg import Style, circle, group, label_svg, path, placed_labels, places_along, polylines, svg
 from assembly.graph.interlacing import Interlacing, interlacing
@@ -100,8 +100,8 @@ def _card(plan: Plan, step: Step, words: Mapping[str, Any], picture: str, langua
         "number": step.number, "id": step.id, "title": said.title, "shell": step.shell, "phase": step.phase, "key": "",
         "line": f"{phase} · ", "pictures": [picture], "caption": words["captions"].get(f"graph {step.phase}", ""),
         "instructions": said.instructions, "table": {"head": [words["page"]["marks"]], "rows": [[marks]]}, "parts": [],
-        "extras": said.extras, "propped": ", ".join(step.propped), "crew": step.crew, "tools": said.tools, "heaviest": "",
-        "after": [titles[before] for before in step.predecessors], "hold": said.hold, "added": "",
+        "extras": said.extras, "propped": ", ".join(step.propped), "crew": step.crew, "tools": said.tools,
+        "after": [titles[before] for before in step.predecessors], "hold": said.hold, "heaviest": "", "added": "",
     }  # fmt: skip
 
 

@@ -16,7 +16,8 @@ from aag_cad.units import MM_PER_M
 from assembly.base.crew import crew_of, lifting_findings, named_marks
 from assembly.base.phases import Phase
 from assembly.base.steps import Plan
-from assembly.graph.laying_units import Crossing, Interlacing, Slide, Unit, interlacing, units_of
+from assembly.graph.interlacing import Interlacing, Slide, interlacing
+from assembly.graph.laying_units import Crossing, Unit, units_of
 from assembly.laying.joining import Joining, joinings
 from assembly.laying.order import FlatOrder, flat_order_of, groups_of
 from assembly.plan.work import PAIR, Work, steps_from

@@ -13,7 +13,7 @@ from aag_cad.design_making import Minutes
 from aag_cad.parts.model import Gridshell
 from assembly.base.errors import PlanError
 from assembly.base.steps import Plan, Step
-from assembly.booklet.calendar import calendar_bytes, working_day, write_calendar
+from assembly.booklet.calendar import calendar_bytes, write_calendar
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.clock import working_day
 from assembly.plan.durations import step_minutes

@@ -19,6 +19,7 @@ from assembly.base.steps import Plan, Step
 from assembly.booklet.schedule_table import SCHEDULE_HEADER, schedule_csv
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.durations import person_minutes, step_minutes, step_works
+from assembly.base.phases import PHASE
 from assembly.plan.schedule import UNBROKEN, critical_path, lower_bound, people_curve, schedule_of
 
 MINUTES = Minutes.model_validate({})
@@ -51,7 +52,7 @@ def test_every_plan_is_scheduled_within_its_crew_and_order(case: tuple[Plan, dic
         when = times[step.id]
         assert when.end_minute - when.start_minute == minutes[step.id]
         assert all(times[before].end_minute <= when.start_minute for before in step.predecessors)
-        if step.phase in UNBROKEN and minutes[step.id] <= 240:
+        if PHASE[step.phase].unbroken and minutes[step.id] <= 240:
             assert when.start_minute // 240 == max(when.start_minute, when.end_minute - 1) // 240
     for minute in range(schedule.makespan):
         assert sum(when.people for when in schedule.steps if when.start_minute <= minute < when.end_minute) <= people
