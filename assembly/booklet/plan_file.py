@@ -114,6 +114,11 @@ class PlanFile:
     segments: tuple[TravellingSegment, ...]
     findings: tuple[PlanFinding, ...]
 
+    @property
+    def plan(self) -> Plan:
+        """The steps of the file as a plan; its findings stand in the file."""
+        return Plan(self.name, tuple(each.step for each in self.steps))
+
 
 @cache
 def _adapter() -> TypeAdapter[PlanFile]:

@@ -26,7 +26,7 @@ from assembly.plan.assembly_plan import plan_of
 from assembly.plan.disassembly import disassembly_of
 from assembly.plan.piece_weights import piece_weights
 from assembly.plan.schedule import schedule_of
-from assembly.plan.wording import fasteners_by_kind, wording
+from assembly.plan.step_cards import fasteners_by_kind
 
 TABLES = sorted(path.stem for path in template("printouts", "words").glob("*.toml"))
 # Texts for special cases of a phase: segments of cut shells, edges and shells without straps.

@@ -6,7 +6,9 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from making import a_step
 
+from aag_cad.design_making import Crew
 from aag_cad.errors import AagError
 from aag_cad.findings import Finding
 from aag_cad.language import LANGUAGES
@@ -14,8 +16,9 @@ from aag_cad.parts.model import Gridshell
 from assembly.base.errors import PlanError
 from assembly.base.phases import PHASES
 from assembly.base.steps import Plan, Step
-from assembly.booklet.plan_file import plan_json, read_plan
+from assembly.booklet.plan_file import plan_file, plan_json, read_plan
 from assembly.plan.assembly_plan import plan_of
+from assembly.plan.schedule import schedule_of
 
 texts = st.text(max_size=12)
 listed = st.lists(texts, max_size=4).map(tuple)
@@ -68,9 +71,10 @@ def test_the_plan_of_the_vault_comes_back_equal(gridshell: Gridshell) -> None:
 
 
 def _file(**changes: Any) -> str:
-    step = Step(1, "S1.hoist", "hoist", "Hoist", "S1", (), ("S1",), (), 4, (), ("Up.",), "Stop.")
-    data = json.loads(plan_json(Plan("vault", (step,))))
-    data["steps"][0] |= changes
+    plan = Plan("vault", (a_step(1, "Hoist", "hoist", shell="S1", assemblies=("S1",)),))
+    crew = Crew.model_validate({"people": 1, "lift_limit": 25.0})
+    data = json.loads(plan_json(plan_file(plan, schedule_of(plan, {"s1": 60}, 1), crew, ())))
+    data["steps"][0]["step"] |= changes
     return json.dumps(data)
 
 

@@ -9,24 +9,25 @@ import networkx as nx
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from making import a_step
 
 from aag_cad.design import Design, design_text, parse_design
 from aag_cad.design_making import Minutes
 from aag_cad.errors import DesignError
 from aag_cad.parts.model import Gridshell
 from assembly.base.errors import PlanError
+from assembly.base.phases import PHASE
 from assembly.base.steps import Plan, Step
 from assembly.booklet.schedule_table import SCHEDULE_HEADER, schedule_csv
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.durations import person_minutes, step_minutes, step_works
-from assembly.base.phases import PHASE
-from assembly.plan.schedule import UNBROKEN, critical_path, lower_bound, people_curve, schedule_of
+from assembly.plan.schedule import critical_path, lower_bound, people_curve, schedule_of
 
 MINUTES = Minutes.model_validate({})
 
 
-def a_step(number: int, after: tuple[str, ...] = (), crew: int = 1) -> Step:
-    return Step(number, f"s{number}", "studs", f"Step {number}", "S1", (), (), (), crew, after, ())
+def chained(number: int, after: tuple[str, ...] = (), crew: int = 1) -> Step:
+    return a_step(number, f"Step {number}", shell="S1", predecessors=after, crew=crew)
 
 
 @st.composite
@@ -37,7 +38,7 @@ def plans(draw: st.DrawFn) -> tuple[Plan, dict[str, int], int]:
     for number in range(1, draw(st.integers(1, 14)) + 1):
         before = draw(st.sets(st.sampled_from([step.id for step in steps]), max_size=3)) if steps else set()
         hoisted = draw(st.booleans())
-        step = a_step(number, tuple(sorted(before)), draw(st.integers(1, people)))
+        step = chained(number, tuple(sorted(before)), draw(st.integers(1, people)))
         steps.append(replace(step, phase="hoist") if hoisted else step)
     return Plan("random", tuple(steps)), {step.id: draw(st.integers(0, 200)) for step in steps}, people
 
@@ -110,7 +111,7 @@ def test_nobody_beats_the_lower_bound_even_with_the_best_order(case: tuple[Plan,
 
 
 def test_three_steps_of_two_people_take_three_turns_for_a_crew_of_three() -> None:
-    plan = Plan("three", tuple(a_step(i, crew=2) for i in (1, 2, 3)))
+    plan = Plan("three", tuple(chained(i, crew=2) for i in (1, 2, 3)))
     minutes = {"s1": 10, "s2": 20, "s3": 30}
     assert lower_bound(plan, minutes, 3) == 60
     assert schedule_of(plan, minutes, 3).makespan == 60
@@ -118,8 +119,8 @@ def test_three_steps_of_two_people_take_three_turns_for_a_crew_of_three() -> Non
 
 
 def test_a_hoist_that_would_run_into_the_night_waits_for_the_morning() -> None:
-    hoist = replace(a_step(2, ("s1",)), phase="hoist")
-    schedule = schedule_of(Plan("two", (a_step(1), hoist)), {"s1": 400, "s2": 100}, 1)
+    hoist = replace(chained(2, ("s1",)), phase="hoist")
+    schedule = schedule_of(Plan("two", (chained(1), hoist)), {"s1": 400, "s2": 100}, 1)
     assert [when.start_minute for when in schedule.steps] == [0, 480]
     assert schedule.days == pytest.approx(580 / 480)
 
@@ -127,11 +128,11 @@ def test_a_hoist_that_would_run_into_the_night_waits_for_the_morning() -> None:
 @pytest.mark.parametrize(
     ("steps", "words"),
     [
-        ((a_step(1, ("s2",)), a_step(2, ("s1",))), "s1.*circle"),
-        ((a_step(1, ("s9",)),), "s1.*s9"),
-        ((a_step(1, crew=3),), "s1.*3 people.*crew.people"),
-        ((a_step(1), a_step(1)), "s1.*twice"),
-        ((a_step(3),), "s3.*None minutes"),
+        ((chained(1, ("s2",)), chained(2, ("s1",))), "s1.*circle"),
+        ((chained(1, ("s9",)),), "s1.*s9"),
+        ((chained(1, crew=3),), "s1.*3 people.*crew.people"),
+        ((chained(1), chained(1)), "s1.*twice"),
+        ((chained(3),), "s3.*None minutes"),
     ],
 )
 def test_a_plan_that_is_no_order_is_refused_by_its_step(steps: tuple[Step, ...], words: str) -> None:

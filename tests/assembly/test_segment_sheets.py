@@ -6,13 +6,13 @@ from xml.etree import ElementTree
 
 import pytest
 
-from aag_cad.language import LANGUAGES, Language
+from aag_cad.language import LANGUAGES, Language, printed
 from aag_cad.parts.model import Gridshell
 from assembly.base.segments import Limits, Segmentation, splices_of
 from assembly.booklet.segment_sheet import (
     SEGMENTS_HEADER,
     SPLICES_HEADER,
-    brace_words,
+    brace_text,
     segment_cards,
     segment_rows,
     splice_rows,
@@ -81,7 +81,7 @@ def test_the_cards_say_the_same_in_both_languages(cut: Segmentation) -> None:
 def test_a_brace_is_told_with_its_ends_and_length(cut: Segmentation) -> None:
     brace = cut.segments[0].braces[0]
     for language in LANGUAGES:
-        words = brace_words(brace, language)
+        words = printed(brace_text(brace), language)
         assert brace.start[3:] in words
         assert brace.end[3:] in words
         assert f"{brace.length:.0f} mm" in words

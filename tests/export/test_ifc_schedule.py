@@ -14,10 +14,11 @@ from aag_cad.design import Design
 from aag_cad.errors import DesignError
 from aag_cad.export.ifc.model import ifc_model
 from aag_cad.export.ifc.options import IfcOptions
-from aag_cad.export.ifc.schedule import scheduled
-from aag_cad.export.ifc.tasks import Timing, WorkingTime, timings
+from aag_cad.export.ifc.schedule import task_timings
+from aag_cad.export.ifc.tasks import Timing, timings
 from aag_cad.parts.model import Gridshell, all_parts
 from assembly.base.steps import Plan, Step
+from assembly.plan.clock import Clock
 from assembly.plan.schedule import critical_path
 
 FIRST = datetime(2000, 1, 1, 9)
@@ -45,7 +46,7 @@ def ifc(sample: Gridshell, steps: tuple[Step, ...], options: IfcOptions) -> ifco
 
 @pytest.fixture(scope="module")
 def times(sample: Gridshell, steps: tuple[Step, ...], options: IfcOptions) -> Mapping[str, Timing]:
-    return scheduled(sample, steps, options)[0]
+    return task_timings(sample, steps, options)[0]
 
 
 def test_every_step_is_a_task_under_the_schedule_of_a_work_plan(
@@ -83,7 +84,7 @@ def test_each_part_is_built_by_one_task_and_each_task_names_what_it_works_on(
 def test_tasks_have_the_times_of_the_schedule(
     ifc: ifcopenshell.file, sample: Gridshell, steps: tuple[Step, ...], options: IfcOptions
 ) -> None:
-    found, schedule = scheduled(sample, steps, options)
+    found, schedule = task_timings(sample, steps, options)
     when = {step.id: step for step in schedule.steps}
     for task in ifc.by_type("IfcTask"):
         time, timing = task.TaskTime, found[task.Identification]
@@ -150,13 +151,13 @@ def test_floats_of_a_diamond_of_steps_are_those_of_the_textbook() -> None:
 
 def test_work_goes_on_the_next_working_day() -> None:
     """Eight hours a day from 8 o'clock, Monday to Friday; the work begins on a Saturday, so on Monday the 3rd."""
-    work = WorkingTime(date(2000, 1, 1), 480, 5)
+    work = Clock(date(2000, 1, 1), 480, 5)
     assert work.start(0) == "2000-01-03T08:00:00"
     assert work.finish(480) == "2000-01-03T16:00:00"
     assert work.start(480) == "2000-01-04T08:00:00"
     assert work.finish(5 * 480) == "2000-01-07T16:00:00"
     assert work.start(5 * 480 + 30) == "2000-01-10T08:30:00"
-    assert WorkingTime(date(2000, 1, 5), 480, 7).start(3 * 480) == "2000-01-08T08:00:00"
+    assert Clock(date(2000, 1, 5), 480, 7).start(3 * 480) == "2000-01-08T08:00:00"
 
 
 def test_tasks_tell_their_people_and_what_to_check(ifc: ifcopenshell.file, steps: tuple[Step, ...]) -> None:
