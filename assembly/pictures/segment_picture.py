@@ -32,7 +32,6 @@ from assembly.drawing.svg import (
     text,
 )
 from assembly.pictures.step_pictures import NEW
-from assembly.transport.segment_sheet import splices_of
 
 WIDTH = 1800.0
 _MARGIN = 60.0
