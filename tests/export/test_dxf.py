@@ -151,11 +151,13 @@ def test_the_chain_of_dimensions_adds_up_to_the_length(
     documents: dict[str, Drawing], groups: tuple[DrillGroup, ...]
 ) -> None:
     for group in groups:
-        items = documents[group.mark].modelspace().query('TEXT[layer=="DIMENSIONS"]')
-        level = [item for item in items if item.dxf.rotation == 0.0]
+        items = documents[group.mark].modelspace().query('DIMENSION[layer=="DIMENSIONS"]')
         for side in (1.0, -1.0):
-            chain = [float(item.dxf.text) for item in level if item.get_placement()[1].y * side > 0.0]
-            assert not chain or math.isclose(sum(chain), round(group.master.blank.length, 1), abs_tol=1e-6)
+            chain = [item for item in items if item.dxf.defpoint.y * side > 0.0]
+            written = [float(item.dxf.text) for item in chain]
+            assert not chain or math.isclose(sum(written), round(group.master.blank.length, 1), abs_tol=1e-6)
+            # Differences of two printed stations.
+            assert written == pytest.approx([item.get_measurement() for item in chain], abs=0.1001)
 
 
 def test_the_check_bar_is_a_hundred_millimetres(documents: dict[str, Drawing]) -> None:
@@ -225,9 +227,10 @@ def test_a_drawing_has_the_same_bytes_whatever_the_hash_seed() -> None:
     """The library registers classes in the order of a set, which the seed of the process turns about."""
     code = (
         "import sys; from aag_cad.export.workshop.dxf import dxf_bytes; "
-        "from aag_cad.export.workshop.blank_drawings import Drawing, Line; "
-        "sys.stdout.buffer.write(dxf_bytes(Drawing('T-01', (Line('OUTLINE', (0.0, 0.0), (9.0, 5.0)),), "
-        "(0.0, 0.0, 9.0, 5.0))))"
+        "from aag_cad.export.workshop.blank_drawings import Dimension, Drawing, Line; "
+        "items = (Line('OUTLINE', (0.0, 0.0), (9.0, 5.0)), "
+        "Dimension('DIMENSIONS', (0.0, 0.0), (9.0, 0.0), 14.0, '9.0', (4.5, 10.0))); "
+        "sys.stdout.buffer.write(dxf_bytes(Drawing('T-01', items, (0.0, 0.0, 9.0, 14.0))))"
     )
     written = {
         subprocess.run(

@@ -29,8 +29,10 @@ LAYERS: dict[str, int] = {
     TITLE: 7,
 }
 CHECK_LENGTH = 100.0
+# Height of the texts, and how far a dimension's side lines reach past its line, mm.
+SMALL = 5.0
+EXTENSION = 3.0
 
-_SMALL = 5.0
 _LARGE = 7.0
 _CHARACTER = 1.0
 _CHAIN = 14.0
@@ -90,7 +92,19 @@ class Text:
     rotation_deg: float = 0.0
 
 
-Item: TypeAlias = Line | Polyline | Circle | Obround | Text
+@dataclass(frozen=True)
+class Dimension:
+    """A dimension along x between two points: the height of its line, what it says, and the middle of its text."""
+
+    layer: str
+    start: Point
+    end: Point
+    line: float
+    content: str
+    at: Point
+
+
+Item: TypeAlias = Line | Polyline | Circle | Obround | Text | Dimension
 
 
 @dataclass(frozen=True)
@@ -207,13 +221,11 @@ def _running_items(blank: Blank, named: Sequence[tuple[Hole, str]], sign: float)
     ]
     items: list[Item] = []
     for place, (at, content, name) in zip(spread([entry[0] for entry in entries], _PITCH), entries, strict=True):
-        items.append(Line(DIMENSIONS, (at, sign * (edge + 2.0)), (at, chain + sign * 3.0)))
-        items.append(Line(DIMENSIONS, (at, chain + sign * 3.0), (place, foot)))
-        items.append(Line(DIMENSIONS, (at - 1.5, chain - 1.5), (at + 1.5, chain + 1.5)))
+        items.append(Line(DIMENSIONS, (at, chain + sign * EXTENSION), (place, foot)))
         side: Side = "left" if sign > 0.0 else "right"
-        items.append(Text(DIMENSIONS, content, (place, text), _SMALL, side, 90.0))
+        items.append(Text(DIMENSIONS, content, (place, text), SMALL, side, 90.0))
         if name:
-            items.append(Text(MARKS, name, (place + _BESIDE, text), _SMALL, side, 90.0))
+            items.append(Text(MARKS, name, (place + _BESIDE, text), SMALL, side, 90.0))
     return items
 
 
@@ -222,15 +234,16 @@ def _chain_items(blank: Blank, holes: Sequence[Hole], sign: float) -> list[Item]
 
     They are differences of printed stations, so that a tape along the plank agrees with them.
     """
-    chain, length = sign * (blank.section.width / 2.0 + _CHAIN), blank.length
-    exact = [0.0, *(hole.station for hole in holes), length]
-    steps = [f"{round(b, 1) - round(a, 1):.1f}" for a, b in pairwise(exact)]
-    middles = [(a + b) / 2.0 for a, b in pairwise(exact)]
-    widest = max(len(step) for step in steps) * _CHARACTER * _SMALL
-    items: list[Item] = [Line(DIMENSIONS, (0.0, chain), (length, chain))]
-    for place, step in zip(spread(middles, widest), steps, strict=True):
-        items.append(Text(DIMENSIONS, step, (place, chain - sign * (_SMALL * 0.8)), _SMALL, "centre"))
-    return items
+    edge = sign * blank.section.width / 2.0
+    chain = edge + sign * _CHAIN
+    pairs = list(pairwise([0.0, *(hole.station for hole in holes), blank.length]))
+    steps = [f"{round(b, 1) - round(a, 1):.1f}" for a, b in pairs]
+    widest = max(len(step) for step in steps) * _CHARACTER * SMALL
+    places = spread([(a + b) / 2.0 for a, b in pairs], widest)
+    return [
+        Dimension(DIMENSIONS, (a, edge), (b, edge), chain, step, (place, chain - sign * SMALL * 0.8))
+        for (a, b), step, place in zip(pairs, steps, places, strict=True)
+    ]
 
 
 def _title_lines(group: DrillGroup, title: str, timber: Timber) -> tuple[str, ...]:
@@ -250,7 +263,7 @@ def _check_bar(x: float, y: float) -> list[Item]:
     return [
         Line(CHECK_BAR, (x, y), (x + CHECK_LENGTH, y)),
         *(Line(CHECK_BAR, (at, y - 4.0), (at, y + 4.0)) for at in (x, x + CHECK_LENGTH)),
-        Text(CHECK_BAR, f"check bar {CHECK_LENGTH:g} mm", (x, y + 9.0), _SMALL),
+        Text(CHECK_BAR, f"check bar {CHECK_LENGTH:g} mm", (x, y + 9.0), SMALL),
     ]
 
 
@@ -260,7 +273,7 @@ def blank_drawing(group: DrillGroup, joints: Sequence[Sequence[str]], title: str
     edge = blank.section.width / 2.0
     named = [(hole, "  ".join(joint_names(marks))) for hole, marks in zip(blank.holes, joints, strict=True)]
     lower = any(not is_upper(hole) for hole in blank.holes)
-    reach = _RUNNING + 20.0 * _CHARACTER * _SMALL
+    reach = _RUNNING + 20.0 * _CHARACTER * SMALL
     items: list[Item] = [Polyline(OUTLINE, outline_corners(blank)), *_hole_items(blank), *_mark_items(group)]
     for sign in (1.0, -1.0) if lower else (1.0,):
         side = [(hole, name) for hole, name in named if is_upper(hole) == (sign > 0.0)]

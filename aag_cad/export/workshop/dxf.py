@@ -11,9 +11,14 @@ from ezdxf.enums import TextEntityAlignment
 
 from aag_cad.errors import FileError
 from aag_cad.export.workshop.blank_drawings import (
+    DIMENSIONS,
+    EXTENSION,
     LAYERS,
+    SMALL,
     Circle,
+    Dimension,
     Drawing,
+    Item,
     Line,
     Obround,
     Polyline,
@@ -30,6 +35,18 @@ _ALIGN = {
     "right": TextEntityAlignment.MIDDLE_RIGHT,
 }
 _MARGIN = 20.0
+_STYLE = "AAG"
+_STYLE_OPTIONS = {
+    "dimtxt": SMALL,
+    "dimtsz": SMALL * 0.3,
+    "dimexo": 2.0,
+    "dimexe": EXTENSION,
+    # What stands in a block takes the colour of its layer only from readers that follow blocks.
+    "dimclrd": LAYERS[DIMENSIONS],
+    "dimclre": LAYERS[DIMENSIONS],
+    # The text stays where it is put.
+    "dimtmove": 2,
+}
 
 
 @contextmanager
@@ -43,7 +60,7 @@ def _without_clock() -> Iterator[None]:
         ezdxf.options.write_fixed_meta_data_for_testing = before
 
 
-def _add(space: "ezdxf.layouts.Modelspace", item: Line | Polyline | Circle | Obround | Text) -> None:
+def _add(space: "ezdxf.layouts.Modelspace", item: Item) -> None:
     layer = {"layer": item.layer}
     match item:
         case Line():
@@ -65,6 +82,10 @@ def _add(space: "ezdxf.layouts.Modelspace", item: Line | Polyline | Circle | Obr
         case Text():
             text = space.add_text(item.content, height=item.height, rotation=item.rotation_deg, dxfattribs=layer)
             text.set_placement(item.at, align=_ALIGN[item.anchor])
+        case Dimension():
+            base = (item.start[0], item.line)
+            told = {"text": item.content, "location": item.at, "dimstyle": _STYLE, "dxfattribs": layer}
+            space.add_linear_dim(base, item.start, item.end, **told).render()
 
 
 def dxf_bytes(drawing: Drawing) -> bytes:
@@ -74,6 +95,7 @@ def dxf_bytes(drawing: Drawing) -> bytes:
         document.header["$MEASUREMENT"] = 1
         for name, colour in LAYERS.items():
             document.layers.add(name, color=colour)
+        document.dimstyles.new(_STYLE, dxfattribs=_STYLE_OPTIONS)
         space = document.modelspace()
         for item in drawing.items:
             _add(space, item)
