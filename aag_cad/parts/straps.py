@@ -31,14 +31,14 @@ _Place: TypeAlias = tuple[float, float, CurveId]
 
 
 @dataclass(frozen=True, eq=False)
-class _Run:
+class _StrapLine:
     """The line of a strap on the surface and, for each of the two planks, ways to place its bolts, the best first."""
 
     curve: FramedCurve
     ways: tuple[tuple[tuple[_Place, ...], ...], tuple[tuple[_Place, ...], ...]]
 
 
-def _geodesic_run(design: Design, geodesic: NetworkCurve, crossing: Crossing) -> _Run:
+def _line_over_geodesic(design: Design, geodesic: NetworkCurve, crossing: Crossing) -> _StrapLine:
     """Return the line over the end of a geodesic and the edge plank past it.
 
     Beams in the way move the bolts of the geodesic back, those of the edge plank aside, and at last leave it one.
@@ -53,10 +53,12 @@ def _geodesic_run(design: Design, geodesic: NetworkCurve, crossing: Crossing) ->
     offsets = (0.0, aside, -aside)
     pairs = tuple(((middle - step / 2.0, y, edge), (middle + step / 2.0, y, edge)) for y in offsets)
     singles = tuple(((middle + along, y, edge),) for y in offsets for along in (0.0, diameter, -diameter))
-    return _Run(geodesic.curve, (own, (*pairs, *singles)))
+    return _StrapLine(geodesic.curve, (own, (*pairs, *singles)))
 
 
-def _crown_run(design: Design, curves: dict[CurveId, NetworkCurve], crossing: Crossing, back: float) -> _Run:
+def _line_over_crown(
+    design: Design, curves: dict[CurveId, NetworkCurve], crossing: Crossing, back: float
+) -> _StrapLine:
     """Return the straight line between two ridge planks, ``back`` mm from the ends at which they meet."""
     half = 3.0 * design.joints.bolt_diameter
     ends = []
@@ -76,14 +78,16 @@ def _crown_run(design: Design, curves: dict[CurveId, NetworkCurve], crossing: Cr
         ((_PAST + at - half, 0.0, name), (_PAST + at + half, 0.0, name))
         for at, name in zip((0.0, reach), crossing.curves, strict=True)
     )
-    return _Run(line, ((first,), (last,)))
+    return _StrapLine(line, ((first,), (last,)))
 
 
-def _bolt(design: Design, mark: Mark, number: int, run: _Run, place: _Place, side: float) -> tuple[Bolt, Drilling]:
+def _bolt(
+    design: Design, mark: Mark, number: int, line: _StrapLine, place: _Place, side: float
+) -> tuple[Bolt, Drilling]:
     """Return a bolt through strap and plank, head on the strap, and the drilling of the plank."""
     station, offset, plank = place
     timber, grip = design.timber.thickness, design.timber.thickness + design.ridge.strap_thickness
-    frames = frames_at(run.curve, np.array([station]))
+    frames = frames_at(line.curve, np.array([station]))
     normal, centre = side * frames.normal[0], frames.point[0] + offset * frames.binormal[0]
     frame = axis_frame(centre + (grip - timber / 2.0) * normal, -normal, frames.tangent[0])
     bolt = hexagon_bolt(part_mark(mark, f"B{number}"), design.joints.bolt_diameter, grip, frame)
@@ -91,14 +95,14 @@ def _bolt(design: Design, mark: Mark, number: int, run: _Run, place: _Place, sid
     return bolt, Drilling(curve_mark(mark.shell, plank), *axis, design.joints.bolt_hole, "bolt", str(mark))
 
 
-def _strap(design: Design, mark: Mark, run: _Run, places: Sequence[_Place], side: float) -> Strap:
+def _strap(design: Design, mark: Mark, line: _StrapLine, places: Sequence[_Place], side: float) -> Strap:
     """Return the strap on the inner (side -1) or outer face, just long enough for its bolts."""
     ridge = design.ridge
     at = np.array([station for station, _, _ in places])
     low, high = float(at.min()) - _STEEL_END, float(at.max()) + _STEEL_END
     off = side * (design.timber.thickness + ridge.strap_thickness) / 2.0
-    curve = offset_curve(run.curve, off, 0.0, low, high)
-    stations = nearest_station(curve, frames_at(run.curve, at).point, at - low)
+    curve = offset_curve(line.curve, off, 0.0, low, high)
+    stations = nearest_station(curve, frames_at(line.curve, at).point, at - low)
     holes = tuple(
         Hole(float(s), offset, design.joints.bolt_hole, "bolt", str(mark))
         for s, (_, offset, _) in zip(stations, places, strict=True)
@@ -107,10 +111,10 @@ def _strap(design: Design, mark: Mark, run: _Run, places: Sequence[_Place], side
 
 
 def _strapped(
-    design: Design, mark: Mark, crossing: Crossing, run: _Run, places: Sequence[_Place], side: float
+    design: Design, mark: Mark, crossing: Crossing, line: _StrapLine, places: Sequence[_Place], side: float
 ) -> BuiltJoint:
-    strap = _strap(design, mark, run, places, side)
-    bolted = [_bolt(design, mark, i, run, place, side) for i, place in enumerate(places, start=1)]
+    strap = _strap(design, mark, line, places, side)
+    bolted = [_bolt(design, mark, i, line, place, side) for i, place in enumerate(places, start=1)]
     members = (*(curve_mark(mark.shell, name) for name in crossing.curves), strap.mark)
     fasteners = tuple(bolt.mark for bolt, _ in bolted)
     joint = Joint(str(mark), "ridge", crossing.point, crossing.normal, members, fasteners)
@@ -128,26 +132,26 @@ def strap_joint(
     curves = {curve.id: curve for curve in network.curves}
     names = crossing.curves
     if names[0].family in GEODESICS:
-        runs = [_geodesic_run(design, curves[names[0]], crossing)]
+        lines = [_line_over_geodesic(design, curves[names[0]], crossing)]
     else:
         nearest = design.joints.loaded_end + 6.0 * design.joints.bolt_diameter
         backs = np.arange(nearest, 3.0 * nearest, 2.0 * _BACK).tolist()
-        runs = [_crown_run(design, curves, crossing, back) for back in backs]
+        lines = [_line_over_crown(design, curves, crossing, back) for back in backs]
     own = {curve_mark(mark.shell, name) for name in names}
     others = [obstacle for obstacle in among if obstacle.part.mark not in own]
 
     def free(*parts: Part) -> bool:
         return all(is_free(placed_points(part), others) for part in parts)
 
-    def first_free(run: _Run, ways: tuple[tuple[_Place, ...], ...], side: float) -> tuple[_Place, ...] | None:
-        return next((way for way in ways if free(*(_bolt(design, mark, 1, run, at, side)[0] for at in way))), None)
+    def first_free(line: _StrapLine, ways: tuple[tuple[_Place, ...], ...], side: float) -> tuple[_Place, ...] | None:
+        return next((way for way in ways if free(*(_bolt(design, mark, 1, line, at, side)[0] for at in way))), None)
 
-    for run, side in product(runs, (-1.0, 1.0)):
-        chosen = [first_free(run, ways, side) for ways in run.ways]
+    for line, side in product(lines, (-1.0, 1.0)):
+        chosen = [first_free(line, ways, side) for ways in line.ways]
         places = [place for way in chosen if way is not None for place in way]
-        if None not in chosen and free(_strap(design, mark, run, places, side)):
-            return _strapped(design, mark, crossing, run, places, side)
+        if None not in chosen and free(_strap(design, mark, line, places, side)):
+            return _strapped(design, mark, crossing, line, places, side)
     if names[0].family not in GEODESICS:
         members = tuple(curve_mark(mark.shell, name) for name in names)
         return BuiltJoint(Joint(str(mark), "ridge", crossing.point, crossing.normal, members, ()), (), ())
-    return _strapped(design, mark, crossing, runs[0], [*runs[0].ways[0][0], *runs[0].ways[1][0]], -1.0)
+    return _strapped(design, mark, crossing, lines[0], [*lines[0].ways[0][0], *lines[0].ways[1][0]], -1.0)

@@ -118,7 +118,7 @@ class CuttingPlan:
 
 
 @dataclass(frozen=True)
-class _Task:
+class _Demand:
     """The problem: sizes and rooms with one kerf each, in a common measure; stock in tenths of a millimetre, rising."""
 
     sizes: tuple[int, ...]
@@ -136,14 +136,14 @@ def _tenths(length: float) -> int:
     return round(10.0 * length)
 
 
-def _task(sizes: Counter[int], rules: StockRules) -> _Task:
+def _demand(sizes: Counter[int], rules: StockRules) -> _Demand:
     kerf, trim = _tenths(rules.kerf), _tenths(rules.trim)
     ordered = sorted(sizes, reverse=True)
     stock = sorted({_tenths(length) for length in rules.lengths})
     net = tuple(size + kerf for size in ordered)
     room = tuple(length - 2 * trim + kerf for length in stock)
     common = math.gcd(*net)
-    return _Task(
+    return _Demand(
         tuple(size // common for size in net),
         tuple(sizes[size] for size in ordered),
         tuple(stock),
@@ -151,56 +151,56 @@ def _task(sizes: Counter[int], rules: StockRules) -> _Task:
     )
 
 
-def _shortest_stock(task: _Task, pattern: Pattern) -> int:
+def _shortest_stock(wanted: _Demand, pattern: Pattern) -> int:
     """Return the index of the shortest stock that holds a pattern."""
-    filled = sum(count * size for count, size in zip(pattern, task.sizes, strict=True))
-    return next(i for i, room in enumerate(task.room) if filled <= room)
+    filled = sum(count * size for count, size in zip(pattern, wanted.sizes, strict=True))
+    return next(i for i, room in enumerate(wanted.room) if filled <= room)
 
 
-def _first_fit_decreasing(task: _Task) -> list[Column]:
+def _first_fit_decreasing(wanted: _Demand) -> list[Column]:
     """Return the boards of the rule of thumb: longest pieces first, each into the first board with room for it.
 
     Boards are opened in the longest stock; in the end each becomes the shortest stock that holds what is in it.
     """
     boards: list[list[int]] = []
     left: list[int] = []
-    for i, (size, count) in enumerate(zip(task.sizes, task.demand, strict=True)):
+    for i, (size, count) in enumerate(zip(wanted.sizes, wanted.demand, strict=True)):
         for _ in range(count):
             place = next((b for b, room in enumerate(left) if size <= room), len(boards))
             if place == len(boards):
-                boards.append([0] * len(task.sizes))
-                left.append(task.room[-1])
+                boards.append([0] * len(wanted.sizes))
+                left.append(wanted.room[-1])
             boards[place][i] += 1
             left[place] -= size
-    return [(tuple(board), _shortest_stock(task, tuple(board))) for board in boards]
+    return [(tuple(board), _shortest_stock(wanted, tuple(board))) for board in boards]
 
 
-def _by_rate(values: Floats, task: _Task) -> list[int]:
+def _by_rate(values: Floats, wanted: _Demand) -> list[int]:
     """Return the pieces that are worth anything, best value for their length first."""
-    return [int(i) for i in np.argsort(-values / np.array(task.sizes), kind="stable") if values[i] > 0.0]
+    return [int(i) for i in np.argsort(-values / np.array(wanted.sizes), kind="stable") if values[i] > 0.0]
 
 
-def _divisible_worth(values: Floats, task: _Task, room: int) -> float:
+def _divisible_worth(values: Floats, wanted: _Demand, room: int) -> float:
     """Return what a room would be worth if pieces could be cut through: no pattern is worth more (Dantzig 1957)."""
     worth, left = 0.0, room
-    for i in _by_rate(values, task):
-        filled = min(left, task.demand[i] * task.sizes[i])
-        worth += values[i] * filled / task.sizes[i]
+    for i in _by_rate(values, wanted):
+        filled = min(left, wanted.demand[i] * wanted.sizes[i])
+        worth += values[i] * filled / wanted.sizes[i]
         left -= filled
     return worth
 
 
 def _patterns_worth(
-    values: Floats, task: _Task, room: int, worth: float, rising: bool = False
+    values: Floats, wanted: _Demand, room: int, worth: float, rising: bool = False
 ) -> tuple[list[Pattern], bool]:
     """Return patterns that fit into a room and are worth more than a value, and whether these are all of them.
 
     If ``rising``, each is worth more than the one before it, and the last is the best of all. Depth first; a branch
     ends where even its rest, filled without gaps at the next best rate, is worth too little.
     """
-    order = _by_rate(values, task)
+    order = _by_rate(values, wanted)
     found: list[Pattern] = []
-    counts = [0] * len(task.sizes)
+    counts = [0] * len(wanted.sizes)
     branches, least = 0, worth
 
     def search(depth: int, left: int, value: float) -> bool:
@@ -212,11 +212,11 @@ def _patterns_worth(
                 least = value + _SLACK if rising else worth
             return len(found) < _PATTERNS and branches < _BRANCHES
         i = order[depth]
-        if value + left * values[i] / task.sizes[i] <= least:
+        if value + left * values[i] / wanted.sizes[i] <= least:
             return branches < _BRANCHES
-        for count in range(min(task.demand[i], left // task.sizes[i]), -1, -1):
+        for count in range(min(wanted.demand[i], left // wanted.sizes[i]), -1, -1):
             counts[i] = count
-            if not search(depth + 1, left - count * task.sizes[i], value + count * values[i]):
+            if not search(depth + 1, left - count * wanted.sizes[i], value + count * values[i]):
                 return False
         return True
 
@@ -227,7 +227,7 @@ def _matrix(columns: Sequence[Column]) -> Floats:
     return np.array([pattern for pattern, _ in columns], dtype=np.float64).T
 
 
-def _relaxation(task: _Task, columns: list[Column]) -> tuple[float, Floats]:
+def _relaxation(wanted: _Demand, columns: list[Column]) -> tuple[float, Floats]:
     """Return a lower bound of what any plan buys, in steps, and the duals (n,) that prove it.
 
     Column generation (Gilmore and Gomory 1961); new patterns are added to ``columns``. It ends when no pattern is worth
@@ -236,34 +236,34 @@ def _relaxation(task: _Task, columns: list[Column]) -> tuple[float, Floats]:
     """
     known = set(columns)
     while True:
-        costs = [task.stock[i] / task.step for _, i in columns]
-        answer = linprog(costs, A_ub=-_matrix(columns), b_ub=-np.array(task.demand), method="highs")
+        costs = [wanted.stock[i] / wanted.step for _, i in columns]
+        answer = linprog(costs, A_ub=-_matrix(columns), b_ub=-np.array(wanted.demand), method="highs")
         duals = np.maximum(0.0, -np.asarray(answer.ineqlin.marginals, dtype=np.float64))
         fresh: list[Column] = []
         excess = 1.0
-        for i, (stock, room) in enumerate(zip(task.stock, task.room, strict=True)):
-            patterns, complete = _patterns_worth(duals, task, room, stock / task.step + _SLACK, rising=True)
+        for i, (stock, room) in enumerate(zip(wanted.stock, wanted.room, strict=True)):
+            patterns, complete = _patterns_worth(duals, wanted, room, stock / wanted.step + _SLACK, rising=True)
             fresh += [(pattern, i) for pattern in patterns[-_COLUMNS_AT_A_TIME:] if (pattern, i) not in known]
             if not complete:
-                excess = max(excess, _divisible_worth(duals, task, room) * task.step / stock)
+                excess = max(excess, _divisible_worth(duals, wanted, room) * wanted.step / stock)
         if not fresh:
-            return float(duals @ np.array(task.demand)) / excess, duals / excess
+            return float(duals @ np.array(wanted.demand)) / excess, duals / excess
         known.update(fresh)
         columns += fresh
 
 
-def _least_bought(task: _Task, columns: Sequence[Column], lower: int) -> tuple[list[Column], bool]:
+def _least_bought(wanted: _Demand, columns: Sequence[Column], lower: int) -> tuple[list[Column], bool]:
     """Return the boards of the best plan from given patterns, and whether the integer programme is solved to the end.
 
     That no plan buys less than ``lower`` steps is known, and lets the search end as soon as one is found.
     """
-    costs = np.array([[task.stock[i] / task.step for _, i in columns]])
+    costs = np.array([[wanted.stock[i] / wanted.step for _, i in columns]])
     answer = milp(
         costs[0],
         integrality=np.ones(len(columns), dtype=np.int64),
         bounds=Bounds(0.0, np.inf),
         constraints=(
-            LinearConstraint(_matrix(columns), np.array(task.demand), np.inf),
+            LinearConstraint(_matrix(columns), np.array(wanted.demand), np.inf),
             LinearConstraint(costs, lower, np.inf),
         ),
         options={"mip_rel_gap": 0.0, "node_limit": _NODES},
@@ -274,42 +274,42 @@ def _least_bought(task: _Task, columns: Sequence[Column], lower: int) -> tuple[l
     return [column for column, count in zip(columns, times, strict=True) for _ in range(count)], answer.status == 0
 
 
-def _bought(task: _Task, boards: Iterable[Column]) -> int:
-    return sum(task.stock[i] for _, i in boards) // task.step
+def _bought(wanted: _Demand, boards: Iterable[Column]) -> int:
+    return sum(wanted.stock[i] for _, i in boards) // wanted.step
 
 
-def _better(task: _Task, plan: list[Column], other: list[Column]) -> list[Column]:
-    return other if other and _bought(task, other) < _bought(task, plan) else plan
+def _better(wanted: _Demand, plan: list[Column], other: list[Column]) -> list[Column]:
+    return other if other and _bought(wanted, other) < _bought(wanted, plan) else plan
 
 
-def _solved(task: _Task) -> tuple[list[Column], int, float, int]:
+def _solved(wanted: _Demand) -> tuple[list[Column], int, float, int]:
     """Return the best plan's boards, its lower bound and the linear programme's, and first-fit-decreasing; in steps.
 
     If the plan from the generated patterns misses the bound, the integer programme is solved again over all patterns
     whose reduced cost is less than the gap: no better plan holds any other.
     """
-    usual = _first_fit_decreasing(task)
-    singles = [tuple(int(i == j) for j in range(len(task.sizes))) for i in range(len(task.sizes))]
-    columns = sorted({*usual, *((single, _shortest_stock(task, single)) for single in singles)})
-    relaxed, duals = _relaxation(task, columns)
+    usual = _first_fit_decreasing(wanted)
+    singles = [tuple(int(i == j) for j in range(len(wanted.sizes))) for i in range(len(wanted.sizes))]
+    columns = sorted({*usual, *((single, _shortest_stock(wanted, single)) for single in singles)})
+    relaxed, duals = _relaxation(wanted, columns)
     lower = math.ceil(relaxed - 1e-6)
     best = usual
-    if _bought(task, best) > lower:
-        best = _better(task, best, _least_bought(task, columns, lower)[0])
-    if _bought(task, best) > lower:
-        gap = _bought(task, best) - 1.0 - relaxed
+    if _bought(wanted, best) > lower:
+        best = _better(wanted, best, _least_bought(wanted, columns, lower)[0])
+    if _bought(wanted, best) > lower:
+        gap = _bought(wanted, best) - 1.0 - relaxed
         near: set[Column] = set(best)
         complete = True
-        for i, (stock, room) in enumerate(zip(task.stock, task.room, strict=True)):
-            worth = stock / task.step - gap - 1e-6
-            patterns, ended = _patterns_worth(duals, task, room, worth)
+        for i, (stock, room) in enumerate(zip(wanted.stock, wanted.room, strict=True)):
+            worth = stock / wanted.step - gap - 1e-6
+            patterns, ended = _patterns_worth(duals, wanted, room, worth)
             near.update((pattern, i) for pattern in patterns if any(pattern))
             complete = complete and ended
-        second, solved = _least_bought(task, sorted(near), lower)
-        best = _better(task, best, second)
+        second, solved = _least_bought(wanted, sorted(near), lower)
+        best = _better(wanted, best, second)
         if solved and complete:
-            lower = _bought(task, best)
-    return best, lower, relaxed, _bought(task, usual)
+            lower = _bought(wanted, best)
+    return best, lower, relaxed, _bought(wanted, usual)
 
 
 def grouped_pieces(pieces: Iterable[Piece], planks_per_board: int) -> list[tuple[Piece, ...]]:
@@ -318,7 +318,9 @@ def grouped_pieces(pieces: Iterable[Piece], planks_per_board: int) -> list[tuple
     return [tuple(ordered[i : i + planks_per_board]) for i in range(0, len(ordered), planks_per_board)]
 
 
-def _boards(task: _Task, plan: Iterable[Column], groups: Sequence[tuple[Piece, ...]], rules: StockRules) -> list[Board]:
+def _boards(
+    wanted: _Demand, plan: Iterable[Column], groups: Sequence[tuple[Piece, ...]], rules: StockRules
+) -> list[Board]:
     """Return the plan with its pieces: cuts that nobody needs are left out, and boards as short as that allows."""
     lengths = sorted({group[0].length for group in groups}, reverse=True)
     waiting = [[group for group in groups if group[0].length == length] for length in lengths]
@@ -327,7 +329,7 @@ def _boards(task: _Task, plan: Iterable[Column], groups: Sequence[tuple[Piece, .
         taken = [min(count, len(left)) for count, left in zip(pattern, waiting, strict=True)]
         cuts = [left.pop(0) for count, left in zip(taken, waiting, strict=True) for _ in range(count)]
         if cuts:
-            filled.append((task.stock[_shortest_stock(task, tuple(taken))], cuts))
+            filled.append((wanted.stock[_shortest_stock(wanted, tuple(taken))], cuts))
     filled.sort(key=lambda item: (-item[0], [-group[0].length for group in item[1]], item[1][0][0].mark))
     boards = []
     for number, (length, cuts) in enumerate(filled, start=1):
@@ -351,10 +353,10 @@ def cutting_plan(pieces: Iterable[Piece], rules: StockRules) -> CuttingPlan:
     groups = grouped_pieces(fitting, rules.planks_per_board)
     if not groups:
         return CuttingPlan((), rules.planks_per_board, 0.0, 0.0, 0.0, tuple(refused))
-    task = _task(Counter(_tenths(group[0].length) for group in groups), rules)
-    plan, lower, relaxed, usual = _solved(task)
-    boards = _boards(task, plan, groups, rules)
-    step = task.step / 10.0
+    wanted = _demand(Counter(_tenths(group[0].length) for group in groups), rules)
+    plan, lower, relaxed, usual = _solved(wanted)
+    boards = _boards(wanted, plan, groups, rules)
+    step = wanted.step / 10.0
     return CuttingPlan(
         tuple(boards), rules.planks_per_board, lower * step, relaxed * step, usual * step, tuple(refused)
     )

@@ -8,15 +8,15 @@ from aag_cad.parts.marks import Mark, parse_mark, short_mark
 _PAIR = 2
 
 
-def _runs(numbers: Iterable[int]) -> list[tuple[int, ...]]:
+def _neighbours(numbers: Iterable[int]) -> list[tuple[int, ...]]:
     """Return numbers singly, and first and last of three neighbours or more."""
-    runs: list[list[int]] = []
+    rows: list[list[int]] = []
     for number in sorted(numbers):
-        if runs and number == runs[-1][-1] + 1:
-            runs[-1].append(number)
+        if rows and number == rows[-1][-1] + 1:
+            rows[-1].append(number)
         else:
-            runs.append([number])
-    pieces = ([(run[0], run[-1])] if len(run) > _PAIR else [(number,) for number in run] for run in runs)
+            rows.append([number])
+    pieces = ([(row[0], row[-1])] if len(row) > _PAIR else [(number,) for number in row] for row in rows)
     return [piece for listed in pieces for piece in listed]
 
 
@@ -35,8 +35,8 @@ def mark_ranges(marks: Sequence[str]) -> tuple[str, ...]:
         groups[shell, family, "+".join(part for part in parts if part)].append(index)
     texts = []
     for (shell, family, part), numbers in groups.items():
-        for run in _runs(numbers):
-            ends = [str(Mark(shell, family, number)) for number in run]
+        for row in _neighbours(numbers):
+            ends = [str(Mark(shell, family, number)) for number in row]
             text = " … ".join(short_mark(end) if alone else end for end in ends)
             texts.append(f"{text} {part}" if part else text)
     return tuple(texts)

@@ -44,11 +44,11 @@ class _Way:
 
 def _ways(woven: Interlacing, units: Mapping[str, Unit]) -> dict[str, _Way]:
     stations = {
-        (unit, crossing.joint): mm / units[unit].length
-        for crossing in woven.crossings
-        for unit, mm in ((crossing.lower, crossing.lower_mm), (crossing.upper, crossing.upper_mm))
+        (unit, overlap.joint): mm / units[unit].length
+        for overlap in woven.overlaps
+        for unit, mm in ((overlap.lower, overlap.lower_mm), (overlap.upper, overlap.upper_mm))
     }
-    return {s.unit: _Way(s.end, tuple(stations[s.unit, joint] for joint in s.crossings)) for s in woven.slides}
+    return {s.unit: _Way(s.end, tuple(stations[s.unit, joint] for joint in s.joints)) for s in woven.slides}
 
 
 def _on_sheet(graph: "nx.MultiGraph[str]", units: Mapping[str, Unit]) -> tuple[dict[str, Floats], float]:

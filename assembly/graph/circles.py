@@ -7,14 +7,14 @@ from itertools import groupby, pairwise
 import networkx as nx
 
 from aag_cad.language import Text, text
-from assembly.graph.laying_units import Crossing
+from assembly.graph.laying_units import Overlap
 
 
-def relations(units: Iterable[str], crossings: Iterable[Crossing]) -> "nx.DiGraph[str]":
+def relations(units: Iterable[str], overlaps: Iterable[Overlap]) -> "nx.DiGraph[str]":
     """Return the units with an edge from each to each that lies on it, and the ``joints`` at which it does."""
     where: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for crossing in crossings:
-        where[crossing.lower, crossing.upper].append(crossing.joint)
+    for overlap in overlaps:
+        where[overlap.lower, overlap.upper].append(overlap.joint)
     graph: nx.DiGraph[str] = nx.DiGraph()
     graph.add_nodes_from(sorted(set(units)))
     for (lower, upper), joints in sorted(where.items()):

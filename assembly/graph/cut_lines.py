@@ -18,7 +18,7 @@ from assembly.base.errors import PlanError
 
 
 @dataclass(frozen=True)
-class Crossing:
+class CutPlace:
     """Where a beam or edge plank crosses a line; ``direction`` is 1 if it runs into the upper bay there, else -1."""
 
     joint: str
@@ -28,35 +28,35 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class Track:
-    """A beam (two planks) or an edge plank (one) with its crossings; ``studs`` are the stations of its AA nodes."""
+class CutMember:
+    """A beam (two planks) or an edge plank (one), where it crosses lines, and the stations of its AA nodes."""
 
     mark: str
     planks: tuple[str, ...]
-    crossings: tuple[Crossing, ...]
+    places: tuple[CutPlace, ...]
     studs: tuple[float, ...]
     edge: bool
 
     def bay(self, station: float) -> int:
         """Return the bay of a station, not yet counted around a ring."""
-        after = [crossing for crossing in self.crossings if crossing.station > station]
+        after = [place for place in self.places if place.station > station]
         if not after:
-            last = self.crossings[-1]
+            last = self.places[-1]
             return last.line if last.direction > 0 else last.line - 1
         return after[0].line - 1 if after[0].direction > 0 else after[0].line
 
-    def cut_at(self, crossing: Crossing) -> bool:
+    def cut_at(self, place: CutPlace) -> bool:
         """Return whether a cut along the line cuts this beam: it does if the beam has studs on both sides."""
-        return any(s < crossing.station for s in self.studs) and any(s > crossing.station for s in self.studs)
+        return any(s < place.station for s in self.studs) and any(s > place.station for s in self.studs)
 
 
 @dataclass(frozen=True)
-class Tracks:
+class CutLines:
     """The lines of a shell (marks of its geodesics), whether they close to a ring, and what crosses them."""
 
     lines: tuple[str, ...]
     ring: bool
-    members: tuple[Track, ...]
+    members: tuple[CutMember, ...]
 
     def bay(self, bay: int) -> int:
         """Return a bay counted once around a ring."""
@@ -106,9 +106,9 @@ def _direction(member: Beam | Plank, place: JointStation, line: int, geodesics: 
     return 1 if ahead == up else -1
 
 
-def _track(
+def _cut_member(
     member: Beam | Plank, joints: dict[str, Joint], lines: dict[str, int], geodesics: tuple[Plank, ...]
-) -> Track:
+) -> CutMember:
     listed, n = list(_listed(member, joints, lines)), len(lines)
     steps = []
     for (place, line), (_, following) in pairwise(listed):
@@ -121,11 +121,11 @@ def _track(
         steps.append(step)
     if len(listed) == 1:
         steps = [_direction(member, *listed[0], geodesics)]
-    return Track(
+    return CutMember(
         member.mark,
         member.planks if isinstance(member, Beam) else (member.mark,),
         tuple(
-            Crossing(place.joint, line, place.station, steps[min(i, len(steps) - 1)])
+            CutPlace(place.joint, line, place.station, steps[min(i, len(steps) - 1)])
             for i, (place, line) in enumerate(listed)
         ),
         tuple(place.station for place in member.joints if place.joint in joints and joints[place.joint].kind == "AA"),
@@ -133,7 +133,7 @@ def _track(
     )
 
 
-def tracks(shell: Shell) -> Tracks:
+def cut_lines(shell: Shell) -> CutLines:
     """Return the lines of a shell and what crosses them; PlanError without three geodesics, or if they are unordered.
 
     A beam or edge plank that crosses no geodesic has no place in a cut and is an error too.
@@ -144,10 +144,10 @@ def tracks(shell: Shell) -> Tracks:
     lines = {plank.mark: i for i, plank in enumerate(geodesics, start=1)}
     joints = index_of(shell).joints
     crossing: list[Beam | Plank] = [*shell.beams, *index_of(shell).edges.values()]
-    members = tuple(_track(member, joints, lines, geodesics) for member in crossing)
-    lone = [track.mark for track in members if not track.crossings]
+    members = tuple(_cut_member(member, joints, lines, geodesics) for member in crossing)
+    lone = [member.mark for member in members if not member.places]
     if lone:
         raise PlanError(f"{', '.join(lone)}: crosses no geodesic, so no segment can hold it; carry the shell whole")
     ends = {1, len(lines)}
-    ring = any({a.line, b.line} == ends for track in members for a, b in pairwise(track.crossings))
-    return Tracks(tuple(lines), ring, members)
+    ring = any({a.line, b.line} == ends for member in members for a, b in pairwise(member.places))
+    return CutLines(tuple(lines), ring, members)

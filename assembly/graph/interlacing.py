@@ -13,10 +13,8 @@ from aag_cad.language import Text, text
 from assembly.base.errors import PlanError
 from assembly.graph.circles import circle_links, few_out, knots, part_of, relations
 from assembly.graph.faults import refuse_unlayable
-from assembly.graph.laying_units import Crossing, crossings_of, units_of
+from assembly.graph.laying_units import Overlap, overlaps_of, units_of
 from assembly.graph.sliding import End, Hindrance, Sliding, Why, slidings
-
-__all__ = ["Crossing", "Interlacing", "Slide", "interlacing"]
 
 
 @dataclass(frozen=True)
@@ -24,13 +22,13 @@ class Slide:
     """A unit that is slid in when the others lie: with its other end first, from beyond ``end``.
 
     ``free`` is the length of open floor beyond that end (infinite if nothing lies there), ``radius`` the smallest to
-    which it bends, mm (infinite if it stays straight); ``crossings`` are the joints in the order that it passes them.
+    which it bends, mm (infinite if it stays straight); ``joints`` are those in the order that it passes them.
     """
 
     unit: str
     end: End
     free: float
-    crossings: tuple[str, ...]
+    joints: tuple[str, ...]
     radius: float = math.inf
 
 
@@ -42,7 +40,7 @@ class Interlacing:
     what comes later; its ``joints`` say where. To a unit that is slid in, edges lead from all that it passes.
     """
 
-    crossings: tuple[Crossing, ...]
+    overlaps: tuple[Overlap, ...]
     precedence: "nx.DiGraph[str]"
     slides: tuple[Slide, ...]
     findings: tuple[Finding, ...]
@@ -65,10 +63,10 @@ def _precedence(lying: "nx.DiGraph[str]", slides: Iterable[str], left_out: Colle
     return graph
 
 
-def _slide(sliding: Sliding, crossings: Iterable[Crossing], in_place: Collection[str]) -> Slide:
+def _slide(sliding: Sliding, overlaps: Iterable[Overlap], in_place: Collection[str]) -> Slide:
     passed = sorted(
         (at.upper_mm, at.joint) if at.upper == sliding.unit else (at.lower_mm, at.joint)
-        for at in crossings
+        for at in overlaps
         if sliding.unit in (at.lower, at.upper) and {at.lower, at.upper} - {sliding.unit} <= set(in_place)
     )
     joints = dict.fromkeys(joint for _, joint in (passed[::-1] if sliding.end == "end" else passed))
@@ -76,13 +74,13 @@ def _slide(sliding: Sliding, crossings: Iterable[Crossing], in_place: Collection
 
 
 def _slides(
-    chosen: list[str], found: Mapping[str, Sliding], crossings: Iterable[Crossing], laid: Collection[str]
+    chosen: list[str], found: Mapping[str, Sliding], overlaps: Iterable[Overlap], laid: Collection[str]
 ) -> Iterator[Slide]:
     """Yield the slides in their order; each passes what was laid and what was slid in before it."""
-    by_unit: dict[str, list[Crossing]] = defaultdict(list)
-    for crossing in crossings:
-        by_unit[crossing.lower].append(crossing)
-        by_unit[crossing.upper].append(crossing)
+    by_unit: dict[str, list[Overlap]] = defaultdict(list)
+    for overlap in overlaps:
+        by_unit[overlap.lower].append(overlap)
+        by_unit[overlap.upper].append(overlap)
     in_place = set(laid)
     for unit in chosen:
         yield _slide(found[unit], by_unit[unit], in_place)
@@ -118,10 +116,10 @@ def interlacing(graph: "nx.MultiGraph[str]", later: Collection[str] | None = Non
     refuse_unlayable(graph)
     units = units_of(graph)
     absent = {mark for mark, unit in units.items() if unit.family in EDGES} if later is None else set(later)
-    crossings, meetings = crossings_of(graph)
-    lying = relations(units, crossings)
+    overlaps, meetings = overlaps_of(graph)
+    lying = relations(units, overlaps)
     tied = {mark for knot in knots(lying) for mark in knot}
-    found = slidings(sorted(tied), units, crossings, meetings, absent)
+    found = slidings(sorted(tied), units, overlaps, meetings, absent)
     fixed = part_of(lying, {mark for mark in tied if found[mark].hindrances})
     stuck = knots(fixed)
     left_out = {mark for knot in stuck for mark in knot}
@@ -129,9 +127,9 @@ def interlacing(graph: "nx.MultiGraph[str]", later: Collection[str] | None = Non
     able, families = set(found) - set(fixed), {mark: unit.family for mark, unit in units.items()}
     chosen = [mark for knot in knots(free) for mark in few_out(part_of(free, knot), able, families)]
     return Interlacing(
-        crossings=crossings,
+        overlaps=overlaps,
         precedence=_precedence(lying, chosen, left_out),
-        slides=tuple(_slides(chosen, found, crossings, set(units) - left_out - set(chosen))),
+        slides=tuple(_slides(chosen, found, overlaps, set(units) - left_out - set(chosen))),
         findings=tuple(_finding(part_of(fixed, knot), found) for knot in stuck),
         left_out=tuple(sorted(left_out)),
     )

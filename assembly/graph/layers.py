@@ -13,7 +13,7 @@ from aag_cad.parts.model import Joint, Shell
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
 from assembly.graph.circles import circle_links, knots, part_of, relations
-from assembly.graph.laying_units import Crossing
+from assembly.graph.laying_units import Overlap
 
 SAME_HEIGHT = 1.0
 
@@ -75,12 +75,12 @@ def layer_precedence(shell: Shell) -> "nx.DiGraph[str]":
     order. PlanError with every circle in which the members are woven, so that none of them can be the lowest.
     """
     unit_of = index_of(shell).unit_of
-    crossings = [
-        Crossing(joint.mark, unit_of[lower[0]], unit_of[upper[0]], 0.0, 0.0)
+    overlaps = [
+        Overlap(joint.mark, unit_of[lower[0]], unit_of[upper[0]], 0.0, 0.0)
         for joint, lower, upper, lies in stacked_planks(shell)
         if lies
     ]
-    graph = relations(unit_of.values(), crossings)
+    graph = relations(unit_of.values(), overlaps)
     if found := knots(graph):
         told = "\n".join(f"{', '.join(knot)}: {circle_links(part_of(graph, knot))}" for knot in found)
         raise PlanError(

@@ -37,7 +37,7 @@ class Unit:
 
 
 @dataclass(frozen=True)
-class Crossing:
+class Overlap:
     """A joint at which a unit lies on another; ``lower_mm`` and ``upper_mm`` are its stations along them."""
 
     joint: str
@@ -149,7 +149,7 @@ def _stations(graph: "nx.MultiGraph[str]", lower: str, upper: str, edge: dict[st
     return float(edge["below_mm"]), float(edge["above_mm"])
 
 
-def crossings_of(graph: "nx.MultiGraph[str]") -> tuple[tuple[Crossing, ...], tuple[Meeting, ...]]:
+def overlaps_of(graph: "nx.MultiGraph[str]") -> tuple[tuple[Overlap, ...], tuple[Meeting, ...]]:
     """Return where units of a graph lie on one another and where they meet, sorted by joint and marks.
 
     The crossings of the planks of two beams at one joint are one; its stations are their means.
@@ -174,11 +174,11 @@ def crossings_of(graph: "nx.MultiGraph[str]") -> tuple[tuple[Crossing, ...], tup
         if not upper and pair[1] < pair[0]:
             pair, at = pair[::-1], at[::-1]
         found[bool(upper), joint_name(a, b, key, edge), *pair].append((at[0], at[1]))
-    crossings, meetings = [], []
+    overlaps, meetings = [], []
     for (lies, joint, one, other), listed in sorted(found.items()):
         x, y = np.mean(listed, axis=0).tolist()
         if lies:
-            crossings.append(Crossing(joint, one, other, x, y))
+            overlaps.append(Overlap(joint, one, other, x, y))
         else:
             meetings.append(Meeting(joint, (one, other), (x, y)))
-    return tuple(crossings), tuple(meetings)
+    return tuple(overlaps), tuple(meetings)

@@ -11,7 +11,7 @@ import numpy as np
 
 from aag_cad.units import Floats
 from assembly.base.shell_axes import best_plane
-from assembly.graph.laying_units import PARALLEL, Crossing, Meeting, Unit
+from assembly.graph.laying_units import PARALLEL, Meeting, Overlap, Unit
 
 End: TypeAlias = Literal["start", "end"]
 Why: TypeAlias = Literal["upright", "kept", "unknown", "radius", "length"]
@@ -69,14 +69,14 @@ def bend_radius(spacing: float, height: float) -> float:
 
 
 def smallest_bend(
-    unit: Unit, crossings: Sequence[Crossing], units: Mapping[str, Unit], heights: Mapping[int, float]
+    unit: Unit, overlaps: Sequence[Overlap], units: Mapping[str, Unit], heights: Mapping[int, float]
 ) -> float | None:
     """Return the smallest radius to which a unit bends from over one crossing to under the next; None if unknown, mm.
 
     The units that it crosses lie straight, each at the height of its layer. Infinite if it need not bend.
     """
-    places = sorted((at.upper_mm, "over", at.joint, at.lower) for at in crossings if at.upper == unit.mark)
-    places += sorted((at.lower_mm, "under", at.joint, at.upper) for at in crossings if at.lower == unit.mark)
+    places = sorted((at.upper_mm, "over", at.joint, at.lower) for at in overlaps if at.upper == unit.mark)
+    places += sorted((at.lower_mm, "under", at.joint, at.upper) for at in overlaps if at.lower == unit.mark)
     smallest = math.inf
     for (x, side, _, one), (y, next_side, _, other) in pairwise(sorted(places)):
         if side == next_side:
@@ -155,7 +155,7 @@ def _hindrances(unit: Unit, free: float, radius: float | None) -> Iterable[Hindr
 def slidings(
     wanted: Iterable[str],
     units: Mapping[str, Unit],
-    crossings: Iterable[Crossing],
+    overlaps: Iterable[Overlap],
     meetings: Iterable[Meeting],
     absent: Collection[str],
 ) -> dict[str, Sliding]:
@@ -164,11 +164,11 @@ def slidings(
     A unit that it crosses at a joint is no hindrance on the floor: it passes over or under it.
     """
     heights = layer_heights(units.values())
-    passed: dict[str, list[Crossing]] = defaultdict(list)
+    passed: dict[str, list[Overlap]] = defaultdict(list)
     met: dict[str, list[Meeting]] = defaultdict(list)
-    for crossing in crossings:
-        passed[crossing.lower].append(crossing)
-        passed[crossing.upper].append(crossing)
+    for overlap in overlaps:
+        passed[overlap.lower].append(overlap)
+        passed[overlap.upper].append(overlap)
     for meeting in meetings:
         one, other = meeting.units
         met[one] += [meeting] if other not in absent else []

@@ -10,7 +10,7 @@ import numpy as np
 from aag_cad.parts.model import JointKind
 from aag_cad.units import Floats, Vector
 from assembly.base.errors import PlanError
-from assembly.graph.laying_units import Crossing, Unit, joint_name
+from assembly.graph.laying_units import Overlap, Unit, joint_name
 from assembly.laying.order import graph_floor, walking_rows
 from assembly.laying.walking import Point
 
@@ -55,14 +55,14 @@ def joint_points(
     graph: "nx.MultiGraph[str]",
     joints: Mapping[str, Collection[str]],
     units: Mapping[str, Unit],
-    crossings: Collection[Crossing],
+    overlaps: Collection[Overlap],
 ) -> dict[str, Vector]:
     """Return where joints (their members by mark) are: the mean position of their parts that are not laid.
 
     Without one, the point of the lower member at which the upper one crosses it, else the mean of the members' middles.
     """
     home = {part: unit for unit in units.values() for part in unit.parts}
-    crossed = {at.joint: _point_along(units[at.lower], at.lower_mm) for at in crossings}
+    crossed = {at.joint: _point_along(units[at.lower], at.lower_mm) for at in overlaps}
     found = {}
     for joint, members in joints.items():
         places = [graph.nodes[mark].get("position") for mark in members if mark not in home]
@@ -105,7 +105,7 @@ def joinings(
     units: Mapping[str, Unit],
     placed: Mapping[str, str],
     left_out: Collection[str],
-    crossings: Collection[Crossing],
+    overlaps: Collection[Overlap],
 ) -> tuple[tuple[Joining, ...], tuple[str, ...]]:
     """Return the joints at which parts are put in, in the order of walking, and the parts that cannot be put in.
 
@@ -124,7 +124,7 @@ def joinings(
     stuck = {mark for mark, fastens in loose.items() if not fastens and any(other in gone for other in graph[mark])}
     joints = {name: joint for name, joint in _joints(graph).items() if any(mark in loose for mark in joint.members)}
     shells = {name: _shell_of(graph, joint.members) for name, joint in joints.items()}
-    points = joint_points(graph, {name: joint.members for name, joint in joints.items()}, units, crossings)
+    points = joint_points(graph, {name: joint.members for name, joint in joints.items()}, units, overlaps)
     order = _walked(joints, shells, points, units)
     blocked = {name for name, joint in joints.items() if any(mark in gone or mark in stuck for mark in joint.members)}
     waiting = stuck | {mark for name in blocked for mark in joints[name].members if loose.get(mark)}

@@ -18,7 +18,7 @@ from aag_cad.parts.model import Beam, Joint, Plank, Shell
 from aag_cad.units import Floats, Ints
 from assembly.base.errors import PlanError
 from assembly.base.shell_axes import shell_view
-from assembly.graph.cut_lines import tracks
+from assembly.graph.cut_lines import cut_lines
 
 _SAME_PLACE = 1.0
 _SAMPLES_PER_BAY = 8
@@ -86,7 +86,7 @@ class Net:
 def is_ring(shell: Shell) -> bool:
     """Return whether a shell closes to a ring, so that it can be laid flat only when it is cut open."""
     try:
-        return tracks(shell).ring
+        return cut_lines(shell).ring
     except PlanError:
         return False
 

@@ -71,7 +71,7 @@ def _sliding_scene(shell: Shell, step: Step, there: frozenset[str], known: Mappi
     """Return the planks that are slid in, with the crossings that they pass."""
     units = (*step.assemblies, *step.marks)
     slides = {unit: known[unit] for unit in units if unit in known}
-    passed = tuple(dict.fromkeys(joint for slide in slides.values() for joint in slide.crossings))
+    passed = tuple(dict.fromkeys(joint for slide in slides.values() for joint in slide.joints))
     return Scene(there=there, new=_planks_of(shell, units), names=_short(units), starts=units, rings=passed,
                  numbers=numbers_of(passed), slides={unit: slide.end for unit, slide in slides.items()})  # fmt: skip
 

@@ -17,7 +17,7 @@ from assembly.base.crew import crew_of, lifting_findings, named_marks
 from assembly.base.phases import Phase
 from assembly.base.steps import Plan
 from assembly.graph.interlacing import Interlacing, Slide, interlacing
-from assembly.graph.laying_units import Crossing, Unit, units_of
+from assembly.graph.laying_units import Overlap, Unit, units_of
 from assembly.laying.joining import Joining, joinings
 from assembly.laying.order import FlatOrder, flat_order_of, groups_of
 from assembly.plan.work import PAIR, Work, steps_from
@@ -100,10 +100,10 @@ def _laying(task: _Task, steps: dict[str, str]) -> Iterator[Work]:
         )
 
 
-def _passed(slide: Slide, crossings: Iterable[Crossing]) -> tuple[Text, ...]:
+def _passed(slide: Slide, overlaps: Iterable[Overlap]) -> tuple[Text, ...]:
     """Return the crossings of a slide in their order, and whether it lies over or under at each."""
-    turn = {joint: i for i, joint in enumerate(slide.crossings)}
-    listed = sorted((turn[at.joint], at.lower, at.upper, at.joint) for at in crossings if at.joint in turn)
+    turn = {joint: i for i, joint in enumerate(slide.joints)}
+    listed = sorted((turn[at.joint], at.lower, at.upper, at.joint) for at in overlaps if at.joint in turn)
     texts = []
     for _, lower, upper, joint in listed:
         side, other = ("over", lower) if upper == slide.unit else ("under", upper)
@@ -114,10 +114,10 @@ def _passed(slide: Slide, crossings: Iterable[Crossing]) -> tuple[Text, ...]:
 def _sliding(task: _Task, steps: dict[str, str]) -> Iterator[Work]:
     """Yield the slides, one step each."""
     counts: dict[str, int] = defaultdict(int)
-    at_unit: dict[str, list[Crossing]] = defaultdict(list)
-    for crossing in task.woven.crossings:
-        at_unit[crossing.lower].append(crossing)
-        at_unit[crossing.upper].append(crossing)
+    at_unit: dict[str, list[Overlap]] = defaultdict(list)
+    for overlap in task.woven.overlaps:
+        at_unit[overlap.lower].append(overlap)
+        at_unit[overlap.upper].append(overlap)
     for slide in task.order.slides:
         unit = task.units[slide.unit]
         counts[unit.shell] += 1
@@ -196,7 +196,7 @@ def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float) -> P
     order, kits = flat_order_of(graph, woven, later=()), _kits(graph, units)
     task, weights = _Task(graph, units, kits, woven, order), _weights(graph, kits, units)
     placed = {mark: unit for unit, kit in kits.items() for mark in kit}
-    found, waiting = joinings(graph, units, placed, woven.left_out, woven.crossings)
+    found, waiting = joinings(graph, units, placed, woven.left_out, woven.overlaps)
     step_of: dict[str, str] = {}
     works = [*_laying(task, step_of), *_sliding(task, step_of), *_joining(task, found, step_of)]
     lifted = {mark: weight for mark, weight in weights.items() if mark not in woven.left_out}

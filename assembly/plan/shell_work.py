@@ -78,8 +78,8 @@ def _sliding(task: _Task, laid: str) -> Iterator[Work]:
             "steps.slide.way",
             unit=short_mark(slide.unit),
             end=text(f"steps.slide.{slide.end}"),
-            count=len(slide.crossings),
-            joints=", ".join(short_mark(joint) for joint in slide.crossings),
+            count=len(slide.joints),
+            joints=", ".join(short_mark(joint) for joint in slide.joints),
             needed=lengths[slide.unit],
             free=text("steps.slide.open") if slide.free == float("inf") else f"{slide.free:.0f} mm",
         )

@@ -1,4 +1,4 @@
-"""What a run of a shell between two cuts holds: whole parts, pieces of planks, mass, centre of gravity and corners."""
+"""What a stretch of a shell between two cuts holds: whole parts, pieces of planks, mass, centre and corners."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ from aag_cad.parts.model import Bolt, Joint, Part, Plank, Screw, Shell, Strap, S
 from aag_cad.parts.quantities import mass
 from aag_cad.units import Floats
 from assembly.base.segments import PlankPiece, Splice
-from assembly.graph.cut_lines import Track, Tracks, tracks
+from assembly.graph.cut_lines import CutLines, CutMember, cut_lines
 from assembly.graph.gridshell_graph import part_point
 from assembly.transport.splices import beam_splices, edge_splices
 
@@ -24,7 +24,7 @@ _CARRIED_JOINTS = ("AA", "AG", "boundary", "ridge")
 
 
 @dataclass(frozen=True)
-class Run:
+class Stretch:
     """What lies between two stops: marks of whole parts and pieces of planks.
 
     ``mass`` in kg, ``centre`` (3,) and ``corners`` (n, 3) in the coordinates of the shell.
@@ -44,7 +44,7 @@ class Divisible:
 
     shell: Shell
     timber: Timber
-    tracks: Tracks
+    grid: CutLines
     beam_splices: dict[tuple[str, str], Splice]
     edge_splices: dict[tuple[str, int], Splice]
 
@@ -112,30 +112,30 @@ def _rings(plank: Plank, cuts: set[float]) -> tuple[Floats, Floats]:
 
 def divisible(shell: Shell, timber: Timber) -> Divisible:
     """Return a shell with its lines, crossings and possible splices; PlanError if it has no order of geodesics."""
-    grid = tracks(shell)
+    grid = cut_lines(shell)
     return Divisible(shell, timber, grid, beam_splices(shell, grid), edge_splices(shell, grid))
 
 
-def cut_stops(grid: Tracks, start: int, end: int) -> tuple[int, ...]:
-    """Return those of two stops at which a run is cut: none of a chain's ends, and none if it is the whole ring."""
+def cut_stops(grid: CutLines, start: int, end: int) -> tuple[int, ...]:
+    """Return those of two stops at which a stretch is cut: none of a chain's ends, and none if it is the whole ring."""
     if grid.ring and end - start == 2 * len(grid.lines):
         return ()
     return tuple(stop for stop in (start, end) if grid.inner(stop))
 
 
-def _same_stop(grid: Tracks, stop: int) -> int:
+def _same_stop(grid: CutLines, stop: int) -> int:
     """Return a stop counted once around a ring."""
     return (stop - 2) % (2 * len(grid.lines)) + 2 if grid.ring else stop
 
 
-def run_splices(item: Divisible, stop: int) -> tuple[Splice, ...]:
+def stop_splices(item: Divisible, stop: int) -> tuple[Splice, ...]:
     """Return the splices that a cut at a stop needs, beams before edge planks."""
-    grid, line = item.tracks, item.tracks.line(stop)
+    grid, line = item.grid, item.grid.line(stop)
     beams = [
-        item.beam_splices[track.mark, crossing.joint]
-        for track in grid.members
-        for crossing in track.crossings
-        if crossing.line == line and (track.mark, crossing.joint) in item.beam_splices
+        item.beam_splices[member.mark, place.joint]
+        for member in grid.members
+        for place in member.places
+        if place.line == line and (member.mark, place.joint) in item.beam_splices
     ]
     stop = _same_stop(grid, stop)
     edges = [item.edge_splices[t.mark, stop] for t in grid.members if (t.mark, stop) in item.edge_splices]
@@ -143,23 +143,23 @@ def run_splices(item: Divisible, stop: int) -> tuple[Splice, ...]:
 
 
 def _intervals(
-    item: Divisible, track: Track, start: int, end: int, splices: dict[float, Splice]
+    item: Divisible, member: CutMember, start: int, end: int, splices: dict[float, Splice]
 ) -> Iterator[tuple[PlankPiece, ...]]:
-    """Yield the pieces of a beam or edge plank, one for each of its planks, that lie in the run.
+    """Yield the pieces of a beam or edge plank, one for each of its planks, that lie in the stretch.
 
-    ``splices`` are those of the cuts at the ends of the run, by station on the beam or edge plank.
+    ``splices`` are those of the cuts at the ends of the stretch, by station on the beam or edge plank.
     """
-    grid, member = item.tracks, index_of(item.shell).units[track.mark]
+    grid, unit = item.grid, index_of(item.shell).units[member.mark]
     cuts = [splices[station].cuts for station in sorted(splices)]
-    bounds = [0.0, *sorted(splices), member.curve.length]
+    bounds = [0.0, *sorted(splices), unit.curve.length]
     bays, owned = grid.bays(start, end), grid.owned(start, end)
     for i, (low, high) in enumerate(pairwise(bounds)):
-        if track.edge:
-            inside = any(c.line in owned for c in track.crossings if low < c.station < high)
+        if member.edge:
+            inside = any(c.line in owned for c in member.places if low < c.station < high)
         else:
             # Studs decide; a piece between two cuts that has none lies where its middle lies.
-            studs = [s for s in track.studs if low < s < high] or [(low + high) / 2.0]
-            inside = grid.bay(track.bay(studs[0])) in bays
+            studs = [s for s in member.studs if low < s < high] or [(low + high) / 2.0]
+            inside = grid.bay(member.bay(studs[0])) in bays
         if inside:
             yield tuple(
                 PlankPiece(
@@ -167,12 +167,12 @@ def _intervals(
                     cuts[i - 1][k].station if i else 0.0,
                     cuts[i][k].station if i < len(cuts) else item.planks[mark].blank.length,
                 )
-                for k, mark in enumerate(track.planks)
+                for k, mark in enumerate(member.planks)
             )
 
 
 def _held(item: Divisible, spans: dict[str, list[PlankPiece]], joint: Joint) -> list[str]:
-    """Return the planks of a joint that are in the run where the joint is."""
+    """Return the planks of a joint that are in the stretch where the joint is."""
     held = []
     for mark in (mark for mark in joint.members if mark in spans):
         at = index_of(item.shell).stations.get((mark, joint.mark))
@@ -188,7 +188,7 @@ def _past_end(item: Divisible, piece: PlankPiece, at: float) -> bool:
 
 
 def _joint_parts(item: Divisible, spans: dict[str, list[PlankPiece]]) -> Iterator[str]:
-    """Yield what the joints of a run hold: all of it if all planks are there, of a beam alone its block and bolts."""
+    """Yield what the joints of a stretch hold: all if all planks are there, of a beam alone its block and bolts."""
     for joint in (joint for joint in item.shell.joints if joint.kind in _CARRIED_JOINTS):
         planks = [mark for mark in joint.members if mark in item.planks]
         held = _held(item, spans, joint)
@@ -213,25 +213,25 @@ def _station(item: Divisible, splice: Splice) -> float:
 
 
 def _spans(item: Divisible, start: int, end: int) -> dict[str, list[PlankPiece]]:
-    geodesics = [item.tracks.lines[line - 1] for line in item.tracks.owned(start, end)]
+    geodesics = [item.grid.lines[line - 1] for line in item.grid.owned(start, end)]
     spans = {mark: [PlankPiece(mark, 0.0, item.planks[mark].blank.length)] for mark in geodesics}
     cut: dict[str, dict[float, Splice]] = {}
-    for splice in (splice for stop in cut_stops(item.tracks, start, end) for splice in run_splices(item, stop)):
+    for splice in (splice for stop in cut_stops(item.grid, start, end) for splice in stop_splices(item, stop)):
         cut.setdefault(splice.member, {})[_station(item, splice)] = splice
-    for track in item.tracks.members:
-        for pieces in _intervals(item, track, start, end, cut.get(track.mark, {})):
+    for member in item.grid.members:
+        for pieces in _intervals(item, member, start, end, cut.get(member.mark, {})):
             for piece in pieces:
                 spans.setdefault(piece.plank, []).append(piece)
     return spans
 
 
-def run_between(item: Divisible, start: int, end: int) -> Run:
+def stretch_between(item: Divisible, start: int, end: int) -> Stretch:
     """Return what lies between two stops of a shell; shoes, rods, cover, splices and what they replace stay out.
 
     Fasteners that would join two segments are put in on site and belong to none, and so are splice blocks and plates.
     """
     spans = _spans(item, start, end)
-    left_out = frozenset(s.joint for stop in cut_stops(item.tracks, start, end) for s in run_splices(item, stop))
+    left_out = frozenset(s.joint for stop in cut_stops(item.grid, start, end) for s in stop_splices(item, stop))
     small = tuple(dict.fromkeys(_joint_parts(item, spans)))
     masses, centres, corners, whole, pieces = [], [], [], [], []
     for mark, held in spans.items():
@@ -250,7 +250,7 @@ def run_between(item: Divisible, start: int, end: int) -> Run:
         masses.append(item.masses[mark])
         centres.append(item.centres[mark])
         corners += [item.small_corners[mark]] if mark in item.small_corners else []
-    return Run(
+    return Stretch(
         tuple(mark for mark in spans if mark in index_of(item.shell).geodesics),
         (*whole, *small),
         tuple(pieces),

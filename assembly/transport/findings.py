@@ -7,7 +7,7 @@ from aag_cad.findings import Finding, Severity
 from aag_cad.language import Figure, Text, text
 from aag_cad.parts.marks import short_mark
 from assembly.base.segments import Lifting, Limits, Pose, Splice
-from assembly.transport.cut_pieces import Divisible, Run, run_between, run_splices
+from assembly.transport.cut_pieces import Divisible, Stretch, stop_splices, stretch_between
 from assembly.transport.lifting import LEAST_MARGIN
 from assembly.transport.search import least_widths, pose_in, segment_ends, smallest_runs
 
@@ -34,7 +34,7 @@ def _sizes(sizes: Sequence[float]) -> str:
 
 
 def _worst(pose: Pose, mass: float, limits: Limits) -> tuple[str, float, float, str]:
-    """Return in what a run exceeds a transport most: of length, width, height and mass, with found, allowed, unit."""
+    """Return in what a stretch exceeds a transport most: length, width, height or mass, with found, allowed, unit."""
     found, allowed = (*pose.size, mass), (*limits.room, limits.load)
     i = max(range(len(_AXES)), key=lambda i: found[i] / allowed[i])
     return _AXES[i], found[i], allowed[i], "kg" if _AXES[i] == "mass" else "mm"
@@ -47,34 +47,34 @@ def _finding(
     return Finding(code, severity, mark, what, found, allowed, unit, remedy)
 
 
-def whole_run(item: Divisible) -> Run:
+def whole_stretch(item: Divisible) -> Stretch:
     """Return a shell as it travels whole."""
-    return run_between(item, *segment_ends(item, ())[0])
+    return stretch_between(item, *segment_ends(item, ())[0])
 
 
 def wish(item: Divisible, limits: Limits) -> Text:
     """Return what would let a shell travel whole: a width or a height, a larger transport, a load."""
-    run = whole_run(item)
-    load = _words("load", mass=math.ceil(run.mass))
-    if pose_in(run, limits, 1.0).filling <= 1.0 + _ROUNDING:
+    stretch = whole_stretch(item)
+    load = _words("load", mass=math.ceil(stretch.mass))
+    if pose_in(stretch, limits, 1.0).filling <= 1.0 + _ROUNDING:
         return load
     sizes = [
         _words("axis", side=key, size=f"{_up(size):.0f}")
-        for key, size in zip(("width", "height"), least_widths(run, limits), strict=True)
+        for key, size in zip(("width", "height"), least_widths(stretch, limits), strict=True)
         if size is not None
     ]
     if not sizes:
-        sizes = [_words("room", sizes=_sizes([_up(size) for size in pose_in(run, limits).size]))]
+        sizes = [_words("room", sizes=_sizes([_up(size) for size in pose_in(stretch, limits).size]))]
     room = _words("either", sizes=tuple(sizes))
-    return _words("both", room=room, load=load) if run.mass > limits.load else room
+    return _words("both", room=room, load=load) if stretch.mass > limits.load else room
 
 
 def cut_finding(item: Divisible, stops: tuple[int, ...], limits: Limits, wished: Text) -> Finding:
     """Return which cuts a shell needs, and what would spare them (AAG961)."""
-    beams = sum(splice.kind == "block" for stop in stops for splice in run_splices(item, stop))
-    lines = ", ".join(short_mark(item.tracks.lines[item.tracks.line(stop) - 1]) for stop in stops)
-    run = whole_run(item)
-    worst = _worst(pose_in(run, limits), run.mass, limits)
+    beams = sum(splice.kind == "block" for stop in stops for splice in stop_splices(item, stop))
+    lines = ", ".join(short_mark(item.grid.lines[item.grid.line(stop) - 1]) for stop in stops)
+    stretch = whole_stretch(item)
+    worst = _worst(pose_in(stretch, limits), stretch.mass, limits)
     remedy = _words(
         "cut",
         limits=_limits(limits),
@@ -88,18 +88,18 @@ def cut_finding(item: Divisible, stops: tuple[int, ...], limits: Limits, wished:
 
 def hopeless_finding(item: Divisible, limits: Limits, wished: Text) -> Finding:
     """Return why no cuts along geodesics will do (AAG962): the geodesic that alone, cut as well as can be, is worst."""
-    best_of: dict[str, tuple[float, Run, Pose]] = {}
+    best_of: dict[str, tuple[float, Stretch, Pose]] = {}
     for ends in smallest_runs(item):
-        run = run_between(item, *ends)
-        pose = pose_in(run, limits, 1.0)
-        filling = max(pose.filling, run.mass / limits.load)
-        if filling < best_of.get(run.geodesics[0], (math.inf,))[0]:
-            best_of[run.geodesics[0]] = filling, run, pose
-    _, run, pose = max(best_of.values(), key=lambda best: best[0])
+        stretch = stretch_between(item, *ends)
+        pose = pose_in(stretch, limits, 1.0)
+        filling = max(pose.filling, stretch.mass / limits.load)
+        if filling < best_of.get(stretch.geodesics[0], (math.inf,))[0]:
+            best_of[stretch.geodesics[0]] = filling, stretch, pose
+    _, stretch, pose = max(best_of.values(), key=lambda best: best[0])
     box = _words("box", sizes=_sizes(pose.size))
-    told = _words("worst", mass=f"{run.mass:.0f}", geodesic=short_mark(run.geodesics[0]), box=box)
+    told = _words("worst", mass=f"{stretch.mass:.0f}", geodesic=short_mark(stretch.geodesics[0]), box=box)
     remedy = _words("hopeless", limits=_limits(limits), worst=told, wish=wished)
-    worst = _worst(pose, run.mass, limits)
+    worst = _worst(pose, stretch.mass, limits)
     return _finding("AAG962", "error", item.shell.mark, worst, _words(worst[0]), remedy)
 
 

@@ -11,7 +11,7 @@ from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import joint_of
 from aag_cad.parts.model import Plank, Shell
 from assembly.base.segments import Segment, Segmentation, Splice, segments_of
-from assembly.graph.cut_lines import tracks
+from assembly.graph.cut_lines import cut_lines
 
 _PLAY = 50.0
 _STEP = 50.0
@@ -41,7 +41,7 @@ class Seam:
 
 def _neighbours(shell: Shell, own: Sequence[Segment]) -> list[tuple[Segment, Segment]]:
     pairs = list(pairwise(own))
-    return [*pairs, (own[-1], own[0])] if tracks(shell).ring else pairs
+    return [*pairs, (own[-1], own[0])] if cut_lines(shell).ring else pairs
 
 
 def _meets(segment: Segment, joint: str, members: Sequence[str], stations: dict[tuple[str, str], float]) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 
 from assembly.base.errors import PlanError
 from assembly.base.segments import Limits, Pose
-from assembly.transport.cut_pieces import Divisible, Run, run_between, run_splices
+from assembly.transport.cut_pieces import Divisible, Stretch, stop_splices, stretch_between
 from assembly.transport.loading import best_pose
 from assembly.transport.partition import best_chain, best_ring
 
@@ -48,33 +48,33 @@ def limits_from(text: str, option: str = "--transport") -> Limits:
     return Limits(**{"mass": math.inf, **sizes})
 
 
-def pose_in(run: Run, limits: Limits, enough: float = 0.0) -> Pose:
-    """Return the pose of a run that leaves most room in the transport.
+def pose_in(stretch: Stretch, limits: Limits, enough: float = 0.0) -> Pose:
+    """Return the pose of a stretch that leaves most room in the transport.
 
     Where a side of the transport has no limit it counts as far longer than any other; without any limit the smallest
     cube decides.
     """
     known = [size for size in limits.room if math.isfinite(size)]
     if len(known) == len(limits.room):
-        return best_pose(run.corners, limits.room, enough)
-    far = _ENDLESS * max(known, default=float(np.ptp(run.corners, axis=0).max()))
+        return best_pose(stretch.corners, limits.room, enough)
+    far = _ENDLESS * max(known, default=float(np.ptp(stretch.corners, axis=0).max()))
     length, width, height = (size if math.isfinite(size) else far for size in limits.room)
-    return best_pose(run.corners, (length, width, height), enough)
+    return best_pose(stretch.corners, (length, width, height), enough)
 
 
-def fits(run: Run, limits: Limits) -> bool:
-    """Return whether a run is light enough and a pose was found in which it fits."""
-    extents = np.ptp(run.corners, axis=0)
+def fits(stretch: Stretch, limits: Limits) -> bool:
+    """Return whether a stretch is light enough and a pose was found in which it fits."""
+    extents = np.ptp(stretch.corners, axis=0)
     # Too long for the room's diagonal, or smaller in every direction than the room in any: no pose need be sought.
-    if run.mass > limits.load or float(extents.max()) > math.hypot(*limits.room):
+    if stretch.mass > limits.load or float(extents.max()) > math.hypot(*limits.room):
         return False
     if math.hypot(*extents.tolist()) <= min(limits.room):
         return True
-    return pose_in(run, limits, 1.0).filling <= 1.0 + _ROUNDING
+    return pose_in(stretch, limits, 1.0).filling <= 1.0 + _ROUNDING
 
 
 def furthest(stops: Sequence[int], count: int, fitting: Callable[[int, int], bool]) -> dict[int, int]:
-    """Return for each of the first ``count`` stops the furthest stop to which the run between them fits.
+    """Return for each of the first ``count`` stops the furthest stop to which the stretch between them fits.
 
     What lies between two stops also lies between any two around them, so the furthest one never goes back: about two
     looks per stop are enough. A stop from which nothing fits is its own furthest.
@@ -89,8 +89,8 @@ def furthest(stops: Sequence[int], count: int, fitting: Callable[[int, int], boo
 
 
 def _owns(item: Divisible, start: int, end: int) -> bool:
-    """Return whether a run keeps a geodesic and has two different lines as its sides."""
-    return bool(item.tracks.owned(start, end)) and start // 2 != end // 2
+    """Return whether a stretch keeps a geodesic and has two different lines as its sides."""
+    return bool(item.grid.owned(start, end)) and start // 2 != end // 2
 
 
 def best_stops(item: Divisible, limits: Limits) -> tuple[int, ...] | None:
@@ -99,16 +99,16 @@ def best_stops(item: Divisible, limits: Limits) -> tuple[int, ...] | None:
     Fewest segments, then fewest cut beams (a beam cut twice counts twice), then least variance of the masses to the
     gram, then the lowest stops. Each segment keeps at least one geodesic.
     """
-    grid = item.tracks
+    grid = item.grid
     stops, turn = grid.stops(), 2 * len(grid.lines)
     ends = (stops[0], stops[0] + turn) if grid.ring else (stops[0], stops[-1])
-    if fits(run_between(item, *ends), limits):
+    if fits(stretch_between(item, *ends), limits):
         return ()
 
     def fitting(start: int, end: int) -> bool:
         if grid.ring and end - start >= turn:
             return False
-        return not _owns(item, start, end) or fits(run_between(item, start, end), limits)
+        return not _owns(item, start, end) or fits(stretch_between(item, start, end), limits)
 
     far = (*stops, *(stop + turn for stop in stops)) if grid.ring else stops
     reach = furthest(far, len(stops), fitting)
@@ -119,11 +119,11 @@ def best_stops(item: Divisible, limits: Limits) -> tuple[int, ...] | None:
 
     @cache
     def grams(start: int, end: int) -> int:
-        return round(_GRAMS * run_between(item, start, end).mass)
+        return round(_GRAMS * stretch_between(item, start, end).mass)
 
     @cache
     def cost(stop: int) -> int:
-        return sum(splice.kind == "block" for splice in run_splices(item, stop))
+        return sum(splice.kind == "block" for splice in stop_splices(item, stop))
 
     best = best_ring(stops, turn, cost, allowed, grams) if grid.ring else best_chain(stops, cost, allowed, grams)
     return None if best is None else best.stops
@@ -131,7 +131,7 @@ def best_stops(item: Divisible, limits: Limits) -> tuple[int, ...] | None:
 
 def segment_ends(item: Divisible, stops: tuple[int, ...]) -> list[tuple[int, int]]:
     """Return (start, end) of each segment for the stops at which a shell is cut."""
-    grid = item.tracks
+    grid = item.grid
     if grid.ring:
         around = (*stops, stops[0] + 2 * len(grid.lines)) if stops else (2, 2 + 2 * len(grid.lines))
         return list(pairwise(around))
@@ -140,15 +140,15 @@ def segment_ends(item: Divisible, stops: tuple[int, ...]) -> list[tuple[int, int
 
 
 def smallest_runs(item: Divisible) -> list[tuple[int, int]]:
-    """Return the runs that keep a single geodesic: what is left if a shell is cut along every one."""
-    stops = item.tracks.stops()
-    far = (*stops, *(stop + 2 * len(item.tracks.lines) for stop in stops)) if item.tracks.ring else stops
+    """Return the stretches that keep a single geodesic: what is left if a shell is cut along every one."""
+    stops = item.grid.stops()
+    far = (*stops, *(stop + 2 * len(item.grid.lines) for stop in stops)) if item.grid.ring else stops
     pairs = [(a, b) for a in stops for b in far if a < b <= a + 3 and _owns(item, a, b)]
-    return [(a, b) for a, b in pairs if len(item.tracks.owned(a, b)) == 1]
+    return [(a, b) for a, b in pairs if len(item.grid.owned(a, b)) == 1]
 
 
-def least_widths(run: Run, limits: Limits) -> tuple[float | None, float | None]:
-    """Return the least width and the least height, mm, that alone make a run fit; None if four times is too little.
+def least_widths(stretch: Stretch, limits: Limits) -> tuple[float | None, float | None]:
+    """Return the least width and the least height, mm, that alone make a stretch fit; None if four times is too little.
 
     Each by halving, to an eightieth of the range in the worst case; the width found is that of a pose and so is enough.
     """
@@ -158,7 +158,7 @@ def least_widths(run: Run, limits: Limits) -> tuple[float | None, float | None]:
         for k in range(_HALVINGS + 1):
             tried = high if k == 0 else (low + high) / 2.0
             room = (limits.length, *(tried if i == axis else limits.room[i] for i in (1, 2)))
-            pose = best_pose(run.corners, (room[0], room[1], room[2]), 1.0)
+            pose = best_pose(stretch.corners, (room[0], room[1], room[2]), 1.0)
             if pose.filling <= 1.0 + _ROUNDING:
                 high = found = pose.size[axis]
             elif k == 0:

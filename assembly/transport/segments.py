@@ -13,7 +13,7 @@ from aag_cad.parts.model import Frame, Gridshell, Shell
 from aag_cad.parts.products import product_key
 from aag_cad.units import Floats, vector
 from assembly.base.segments import Limits, Pose, Segment, Segmentation, Splice
-from assembly.transport.cut_pieces import Divisible, Run, cut_stops, divisible, run_between, run_splices
+from assembly.transport.cut_pieces import Divisible, Stretch, cut_stops, divisible, stop_splices, stretch_between
 from assembly.transport.findings import cut_finding, hopeless_finding, lifting_finding, splice_finding, wish
 from assembly.transport.lifting import STIFF_GEODESICS, braces, lifting_points, standing_props
 from assembly.transport.search import best_stops, pose_in, segment_ends
@@ -27,9 +27,9 @@ def _vault_pose(pose: Pose, placement: Frame) -> Pose:
     return Pose((vector(axes[0]), vector(axes[1]), vector(axes[2])), pose.size, pose.filling)
 
 
-def _points(item: Divisible, run: Run, matrix: Floats) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Return the places (3,) of the studs of a run and of its coupling blocks, in vault coordinates."""
-    own, shell = set(run.parts), item.shell
+def _points(item: Divisible, stretch: Stretch, matrix: Floats) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Return the places (3,) of the studs of a stretch and of its coupling blocks, in vault coordinates."""
+    own, shell = set(stretch.parts), item.shell
     studs = {stud.mark: np.array(stud.frame.origin) for stud in shell.studs if stud.mark in own}
     held = index_of(shell).blocks.keys() & own
     blocks = {joint.mark: np.array(joint.point) for joint in shell.joints if joint.mark in held and joint.kind == "AG"}
@@ -37,9 +37,9 @@ def _points(item: Divisible, run: Run, matrix: Floats) -> tuple[dict[str, Floats
     return ({m: turn @ p + move for m, p in studs.items()}, {m: turn @ p + move for m, p in blocks.items()})
 
 
-def _feet(item: Divisible, run: Run, matrix: Floats) -> list[Floats]:
-    """Return the feet of the geodesics of a run, (3,) each."""
-    own = set(run.geodesics)
+def _feet(item: Divisible, stretch: Stretch, matrix: Floats) -> list[Floats]:
+    """Return the feet of the geodesics of a stretch, (3,) each."""
+    own = set(stretch.geodesics)
     joints = (joint for joint in item.shell.joints if joint.kind == "foot" and own & set(joint.members))
     return [matrix[:3, :3] @ np.array(joint.point) + matrix[:3, 3] for joint in joints]
 
@@ -49,25 +49,25 @@ def _rising(marks: Iterable[str], points: Mapping[str, Floats]) -> list[str]:
 
 
 def _columns(item: Divisible, start: int, end: int, studs: dict[str, Floats]) -> dict[int, list[str]]:
-    """Return the studs of each bay of a run, from the lowest to the highest; bays from the first to the last."""
-    grid, bays = item.tracks, item.tracks.bays(start, end)
+    """Return the studs of each bay of a stretch, from the lowest to the highest; bays from the first to the last."""
+    grid, bays = item.grid, item.grid.bays(start, end)
     order = [grid.bay(bay) for bay in range(start // 2 - 1, end // 2 + 1)]
     found: dict[int, list[str]] = {bay: [] for bay in dict.fromkeys(order) if bay in bays}
-    for track in grid.members:
-        for place in index_of(item.shell).beams[track.mark].joints if not track.edge else ():
+    for member in grid.members:
+        for place in index_of(item.shell).beams[member.mark].joints if not member.edge else ():
             if place.joint in studs:
-                found[grid.bay(track.bay(place.station))].append(place.joint)
+                found[grid.bay(member.bay(place.station))].append(place.joint)
     return {bay: _rising(marks, studs) for bay, marks in found.items()}
 
 
 def _outermost(
     item: Divisible, start: int, end: int, columns: Mapping[int, list[str]], blocks: dict[str, Floats]
 ) -> tuple[list[str], list[str]]:
-    """Return the first and the last column of a run, each from the lowest to the highest joint.
+    """Return the first and the last column of a stretch, each from the lowest to the highest joint.
 
     A column is the studs of a bay or the coupling blocks on a geodesic.
     """
-    grid = item.tracks
+    grid = item.grid
     placed = {2 * bay + 1: columns.get(grid.bay(bay), []) for bay in range(start // 2 - 1, end // 2 + 1)}
     for line in range((start + 1) // 2, (end + 1) // 2):
         geodesic = item.planks[grid.lines[grid.line(2 * line) - 1]]
@@ -76,41 +76,43 @@ def _outermost(
     return (filled[0], filled[-1]) if len(filled) > 1 else ([], [])
 
 
-def _over(pose: Pose, run: Run, limits: Limits) -> tuple[float, float, float, float]:
+def _over(pose: Pose, stretch: Stretch, limits: Limits) -> tuple[float, float, float, float]:
     length, width, height = (size - room for size, room in zip(pose.size, limits.room, strict=True))
-    return length, width, height, run.mass - limits.load
+    return length, width, height, stretch.mass - limits.load
 
 
-def _segment(item: Divisible, name: str, stops: tuple[int, int], run: Run, shell_pose: Pose, limits: Limits) -> Segment:
-    """Return the segment of a run between two stops, lying in a pose that is given in the coordinates of its shell."""
-    shell, grid, (start, end) = item.shell, item.tracks, stops
+def _segment(
+    item: Divisible, name: str, stops: tuple[int, int], stretch: Stretch, shell_pose: Pose, limits: Limits
+) -> Segment:
+    """Return the segment of a stretch between two stops, lying in a pose given in the coordinates of its shell."""
+    shell, grid, (start, end) = item.shell, item.grid, stops
     matrix = frame_matrix(shell.placement)
-    centre = matrix[:3, :3] @ run.centre + matrix[:3, 3]
+    centre = matrix[:3, :3] @ stretch.centre + matrix[:3, 3]
     pose = _vault_pose(shell_pose, shell.placement)
-    studs, blocks = _points(item, run, matrix)
+    studs, blocks = _points(item, stretch, matrix)
     cuts = cut_stops(grid, start, end)
     sides = {grid.bay(start // 2): start % 2 == 0} if start in cuts else {}
     sides |= {grid.bay(end // 2 - 1): end % 2 == 1} if end in cuts else {}
     lifting = lifting_points(studs, centre)
     if not lifting.studs:
         lifting = lifting_points(studs | blocks, centre)
-    props = standing_props(_feet(item, run, matrix), studs, centre) or lifting.studs
+    props = standing_props(_feet(item, stretch, matrix), studs, centre) or lifting.studs
     columns = _columns(item, start, end, studs)
-    few = len(run.geodesics) < STIFF_GEODESICS
+    few = len(stretch.geodesics) < STIFF_GEODESICS
     ends = _outermost(item, start, end, columns, blocks) if few else ([], [])
-    small = (mark for mark in run.parts if mark in item.small)
+    small = (mark for mark in stretch.parts if mark in item.small)
     steel = sum(item.masses[mark] for mark in small if kind_of(item.small[mark]).material == "steel")
     return Segment(
         name,
         shell.mark,
-        run.geodesics,
-        run.parts,
-        run.pieces,
-        run.mass,
-        run.mass - steel,
+        stretch.geodesics,
+        stretch.parts,
+        stretch.pieces,
+        stretch.mass,
+        stretch.mass - steel,
         vector(centre),
         pose,
-        _over(pose, run, limits),
+        _over(pose, stretch, limits),
         lifting,
         braces(studs | blocks, columns, sides, ends),
         props if cuts else (),
@@ -153,12 +155,12 @@ def segments(gridshell: Gridshell, limits: Limits) -> Segmentation:
             known[key] = stops, None if stops == () else wish(item, limits)
         stops, wished = known[key]
         ends = segment_ends(item, stops or ())
-        runs = [run_between(item, *pair) for pair in ends]
+        stretches = [stretch_between(item, *pair) for pair in ends]
         if key not in poses:
-            poses[key] = [pose_in(run, limits) for run in runs]
+            poses[key] = [pose_in(stretch, limits) for stretch in stretches]
         names = [shell.mark] if len(ends) == 1 else [f"{shell.mark}.{i}" for i in range(1, len(ends) + 1)]
-        own = [_segment(item, *told, limits) for told in zip(names, ends, runs, poses[key], strict=True)]
-        cut = [splice for stop in stops or () for splice in run_splices(item, stop)]
+        own = [_segment(item, *told, limits) for told in zip(names, ends, stretches, poses[key], strict=True)]
+        cut = [splice for stop in stops or () for splice in stop_splices(item, stop)]
         made += own
         splices += cut
         site += _on_site(item, own, cut)

@@ -14,7 +14,7 @@ from aag_cad.mechanics.checks.fastener_spacing import bolt_distances
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Hole, Plank, Shell
 from assembly.base.segments import PlankCut, Splice
-from assembly.graph.cut_lines import Crossing, Track, Tracks
+from assembly.graph.cut_lines import CutLines, CutMember, CutPlace
 
 PLAY = 2.0
 _ACROSS = 2
@@ -33,16 +33,16 @@ def _obstacles(shell: Shell) -> dict[str, float]:
     return halves | {block.mark: block.length / 2.0 for block in shell.blocks}
 
 
-def _beam_splice(shell: Shell, track: Track, crossing: Crossing, line: str) -> Splice:
+def _beam_splice(shell: Shell, member: CutMember, place: CutPlace, line: str) -> Splice:
     planks, bolts, blocks = index_of(shell).planks, index_of(shell).bolts, index_of(shell).blocks
-    joint = index_of(shell).joints[crossing.joint]
+    joint = index_of(shell).joints[place.joint]
     taken = [mark for mark in joint.fasteners if mark in bolts]
     diameter = max(bolts[mark].diameter for mark in taken)
     limits, halves = bolt_distances(diameter, 0.0), _obstacles(shell)
     cuts, rooms = [], []
-    for mark in track.planks:
-        at = next(place.station for place in planks[mark].joints if place.joint == crossing.joint)
-        kept = tuple(hole for hole in planks[mark].blank.holes if hole.joint != crossing.joint)
+    for mark in member.planks:
+        at = next(on.station for on in planks[mark].joints if on.joint == place.joint)
+        kept = tuple(hole for hole in planks[mark].blank.holes if hole.joint != place.joint)
         cuts.append(PlankCut(mark, at, _clear(kept, at)))
         rooms += [abs(hole.station - at) - halves.get(hole.joint, 0.0) - PLAY for hole in kept]
     clear, room = min(cut.clear for cut in cuts), min(rooms, default=float("inf"))
@@ -56,9 +56,9 @@ def _beam_splice(shell: Shell, track: Track, crossing: Crossing, line: str) -> S
     )
     half = 2.0 * limits.a3_t + (max(columns, 1) - 1) * limits.a1
     return Splice(
-        track.mark,
+        member.mark,
         line,
-        crossing.joint,
+        place.joint,
         "block",
         tuple(cuts),
         limits.a3_t + limits.a1,
@@ -72,24 +72,24 @@ def _beam_splice(shell: Shell, track: Track, crossing: Crossing, line: str) -> S
     )
 
 
-def beam_splices(shell: Shell, grid: Tracks) -> dict[tuple[str, str], Splice]:
+def beam_splices(shell: Shell, grid: CutLines) -> dict[tuple[str, str], Splice]:
     """Return the splice of each beam at each crossing where a cut along the line would cut it, by (beam, joint)."""
     return {
-        (track.mark, crossing.joint): _beam_splice(shell, track, crossing, grid.lines[crossing.line - 1])
-        for track in grid.members
-        for crossing in track.crossings
-        if not track.edge and track.cut_at(crossing)
+        (member.mark, place.joint): _beam_splice(shell, member, place, grid.lines[place.line - 1])
+        for member in grid.members
+        for place in member.places
+        if not member.edge and member.cut_at(place)
     }
 
 
-def _beside(track: Track, stop: int, line: int) -> Iterator[tuple[float, float]]:
+def _beside(member: CutMember, stop: int, line: int) -> Iterator[tuple[float, float]]:
     """Yield the stations of the line of a stop and of the next line on the side that its geodesic does not go to."""
-    for i, crossing in enumerate(track.crossings):
-        if crossing.line == line:
+    for i, place in enumerate(member.places):
+        if place.line == line:
             upper = stop % 2 == 1
-            other = i + 1 if upper == (crossing.direction > 0) else i - 1
-            if 0 <= other < len(track.crossings):
-                yield crossing.station, track.crossings[other].station
+            other = i + 1 if upper == (place.direction > 0) else i - 1
+            if 0 <= other < len(member.places):
+                yield place.station, member.places[other].station
 
 
 def _edge_splice(plank: Plank, line: str, span: tuple[float, float], diameter: float) -> Splice:
@@ -105,7 +105,7 @@ def _edge_splice(plank: Plank, line: str, span: tuple[float, float], diameter: f
     return Splice(plank.mark, line, "", "plate", cuts, required, length, 1, 2 * _ACROSS, diameter, ())
 
 
-def edge_splices(shell: Shell, grid: Tracks) -> dict[tuple[str, int], Splice]:
+def edge_splices(shell: Shell, grid: CutLines) -> dict[tuple[str, int], Splice]:
     """Return the splice of each edge plank for each stop that cuts it, by (edge plank, stop).
 
     An edge plank that ends in the bay beside the line stays whole and stands out.
@@ -113,9 +113,9 @@ def edge_splices(shell: Shell, grid: Tracks) -> dict[tuple[str, int], Splice]:
     planks = index_of(shell).planks
     diameter = max((bolt.diameter for bolt in shell.bolts), default=0.0)
     found = {}
-    for track in (track for track in grid.members if track.edge):
+    for member in (member for member in grid.members if member.edge):
         for stop in (stop for stop in grid.stops() if grid.inner(stop)):
             line = grid.line(stop)
-            for span in _beside(track, stop, line):
-                found[track.mark, stop] = _edge_splice(planks[track.mark], grid.lines[line - 1], span, diameter)
+            for span in _beside(member, stop, line):
+                found[member.mark, stop] = _edge_splice(planks[member.mark], grid.lines[line - 1], span, diameter)
     return found

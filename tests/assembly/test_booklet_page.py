@@ -192,6 +192,6 @@ def test_a_plain_graph_has_a_page_too(name: str, design: Design) -> None:
     assert [finding.mark for finding in plan.findings if finding.mark not in page] == []
     slid = [step for step in plan.steps if step.phase == "slide"]
     assert all(step.title in page for step in slid)
-    passed = [joint for slide in interlacing(graph, later=()).slides for joint in slide.crossings]
+    passed = [joint for slide in interlacing(graph, later=()).slides for joint in slide.joints]
     assert len(re.findall(r'<circle [^>]*r="11"/>', page)) == len(passed)
     assert bool(passed) == bool(slid)

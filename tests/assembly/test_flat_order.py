@@ -172,7 +172,7 @@ def test_a_circle_that_is_not_interlaced_is_refused_by_its_marks() -> None:
     one, other = next(iter(woven.precedence.edges))
     circle.add_edge(other, one)
     with pytest.raises(PlanError, match=f"{min(one, other)}.*circle"):
-        flat_order_of(graph, Interlacing(woven.crossings, circle, (), (), ()))
+        flat_order_of(graph, Interlacing(woven.overlaps, circle, (), (), ()))
 
 
 @given(st.lists(st.integers(), max_size=60), st.integers(1, 12))

@@ -161,7 +161,7 @@ def test_the_true_kagome_weave_is_laid_and_slid_in() -> None:
     for step, slide in zip(slides, interlacing(graph).slides, strict=True):
         assert step.marks == (slide.unit,)
         told = " ".join(step.instructions)
-        assert all(joint in told for joint in slide.crossings)
+        assert all(joint in told for joint in slide.joints)
         assert slide.end in step.instructions[0]
 
 

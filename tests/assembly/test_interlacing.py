@@ -26,7 +26,7 @@ def test_what_is_said_of_a_crossing_counts_more_than_the_layers() -> None:
     found = interlacing(graph)
     assert list(found.precedence.edges) == [("B", "A")]
     # Stations that the graph does not give are those where the lines cross.
-    assert (found.crossings[0].lower_mm, found.crossings[0].upper_mm) == pytest.approx((900.0, 900.0))
+    assert (found.overlaps[0].lower_mm, found.overlaps[0].upper_mm) == pytest.approx((900.0, 900.0))
 
 
 def test_one_plank_of_four_round_a_square_is_slid_in() -> None:
@@ -141,7 +141,7 @@ def test_the_vault_is_laid_in_three_layers_without_slides(gridshell: Gridshell) 
     assert set(found.precedence) == set(family)
     pairs = {(family[lower], family[upper]) for lower, upper in found.precedence.edges}
     assert pairs == {("A1", "A2"), ("A1", "G"), ("G", "A2"), ("A1", "E"), ("E", "A2")}
-    joints = [at.joint for at in found.crossings]
+    joints = [at.joint for at in found.overlaps]
     kinds = {"AA", "AG", "boundary"}
     assert sorted(joints) == sorted(j.mark for shell in gridshell.shells for j in shell.joints if j.kind in kinds)
 
@@ -152,16 +152,16 @@ def kagome() -> Interlacing:
 
 
 def test_in_the_kagome_no_plank_is_above_or_below_all_others(kagome: Interlacing) -> None:
-    lower, upper = {at.lower for at in kagome.crossings}, {at.upper for at in kagome.crossings}
+    lower, upper = {at.lower for at in kagome.overlaps}, {at.upper for at in kagome.overlaps}
     assert len(lower) == len(upper) == 18
-    over = {(at.upper[:2], at.lower[:2]) for at in kagome.crossings}
+    over = {(at.upper[:2], at.lower[:2]) for at in kagome.overlaps}
     assert over == {("P1", "P2"), ("P2", "P3"), ("P3", "P1")}
 
 
 def test_along_every_plank_of_the_kagome_over_and_under_take_turns_every_500_mm(kagome: Interlacing) -> None:
-    for unit in {at.lower for at in kagome.crossings}:
-        places = sorted([(at.lower_mm, "under") for at in kagome.crossings if at.lower == unit] +
-                        [(at.upper_mm, "over") for at in kagome.crossings if at.upper == unit])  # fmt: skip
+    for unit in {at.lower for at in kagome.overlaps}:
+        places = sorted([(at.lower_mm, "under") for at in kagome.overlaps if at.lower == unit] +
+                        [(at.upper_mm, "over") for at in kagome.overlaps if at.upper == unit])  # fmt: skip
         assert all(one != other for (_, one), (_, other) in pairwise(places))
         # The ends of the planks are given to a thousandth of a millimetre.
         np.testing.assert_allclose(np.diff([x for x, _ in places]), 500.0, atol=2e-3)
@@ -192,7 +192,7 @@ def test_four_upright_planks_in_a_circle_are_left_out_and_all_else_is_laid() -> 
     assert sorted(found.precedence) == ["G-1", "G-2", "G-3", "L-1", "L-2", "L-3"]
     assert not found.slides
     (finding,) = found.findings
-    circle = [at.joint for at in found.crossings if at.lower[0] == at.upper[0] == "B"]
+    circle = [at.joint for at in found.overlaps if at.lower[0] == at.upper[0] == "B"]
     assert len(circle) == 4
     for name in (*circle, *found.left_out, "upright"):
         assert name in finding.text

@@ -21,9 +21,7 @@ def test_every_unit_is_laid_once_or_left_out(weave: Weave) -> None:
 
 @given(weaves())
 def test_the_crossings_of_two_beams_at_a_joint_are_one(weave: Weave) -> None:
-    found = {
-        (at.joint, at.lower, at.upper): (at.lower_mm, at.upper_mm) for at in interlacing(graph_of(weave)).crossings
-    }
+    found = {(at.joint, at.lower, at.upper): (at.lower_mm, at.upper_mm) for at in interlacing(graph_of(weave)).overlaps}
     assert found == {(f"J{i}", low, high): (x, y) for i, (low, high, x, y) in enumerate(weave.crossings)}
 
 
@@ -53,8 +51,8 @@ def test_a_slid_unit_comes_after_all_that_it_passes_and_passes_it_in_order(weave
                 assert found.precedence.has_edge(other, slide.unit)
                 passed.append((x if slide.unit == low else y, f"J{i}"))
         ordered = tuple(joint for _, joint in sorted(passed))
-        assert slide.crossings in (ordered, ordered[::-1])
-        assert len(ordered) < 2 or (slide.crossings == ordered) == (slide.end == "start")
+        assert slide.joints in (ordered, ordered[::-1])
+        assert len(ordered) < 2 or (slide.joints == ordered) == (slide.end == "start")
 
 
 @given(weaves())
@@ -106,7 +104,7 @@ def test_the_same_weave_gives_the_same_order_however_its_graph_was_built(weave: 
     for a, b, key, edge in reversed(list(graph.edges(keys=True, data=True))):
         other.add_edge(b, a, key=key, **edge)
     one, two = interlacing(graph), interlacing(other)
-    assert (one.crossings, one.slides, one.findings) == (two.crossings, two.slides, two.findings)
+    assert (one.overlaps, one.slides, one.findings) == (two.overlaps, two.slides, two.findings)
     assert list(one.precedence.edges(data=True)) == list(two.precedence.edges(data=True))
 
 
@@ -121,5 +119,5 @@ def test_units_of_different_layers_need_no_slides(weave: Weave, data: st.DataObj
     found = interlacing(graph)
     assert not found.slides
     assert not found.findings
-    assert all(layers[at.lower] < layers[at.upper] for at in found.crossings)
-    assert len(found.crossings) == len(weave.crossings)
+    assert all(layers[at.lower] < layers[at.upper] for at in found.overlaps)
+    assert len(found.overlaps) == len(weave.crossings)

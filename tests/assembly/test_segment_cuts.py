@@ -53,7 +53,7 @@ def brute_ring(stops: int, cost: list[int], weigh: Weigh, whole: int | None) -> 
 
 
 def weigher(masses: list[int], widths: list[int], load: int, room: int) -> Weigh:
-    """The mass of a run of bays, which come round again, or None if it is too heavy or too wide."""
+    """The mass of a stretch of bays, which come round again, or None if it is too heavy or too wide."""
     n = len(masses)
 
     def weigh(a: int, b: int) -> int | None:
@@ -64,7 +64,7 @@ def weigher(masses: list[int], widths: list[int], load: int, room: int) -> Weigh
 
 
 def asked(weigh: Weigh) -> tuple[Callable[[int, int], bool], Callable[[int, int], int]]:
-    """Whether there may be a run, and its mass: which is asked only of a run that may be."""
+    """Whether there may be a stretch, and its mass: which is asked only of a stretch that may be."""
 
     def mass_of(a: int, b: int) -> int:
         found = weigh(a, b)

@@ -22,7 +22,7 @@ from aag_cad.parts.quantities import mass
 from aag_cad.pipeline import gridshell_of
 from assembly.base.errors import PlanError
 from assembly.base.segments import Limits, Segmentation
-from assembly.transport.cut_pieces import Divisible, divisible, run_between, run_splices
+from assembly.transport.cut_pieces import Divisible, divisible, stop_splices, stretch_between
 from assembly.transport.findings import splice_finding
 from assembly.transport.loading import best_pose, hull_points
 from assembly.transport.search import best_stops, limits_from
@@ -61,7 +61,7 @@ def column() -> Gridshell:
 
 
 def test_no_random_pose_of_a_segment_leaves_more_room(item: Divisible) -> None:
-    corners = hull_points(run_between(item, 2, 11).corners)
+    corners = hull_points(stretch_between(item, 2, 11).corners)
     found = best_pose(corners, LORRY.room)
     axes = Rotation.random(2000, random_state=1).as_matrix()
     fillings = [
@@ -147,17 +147,17 @@ def test_segments_fit_by_the_meshes_of_their_parts(single: Gridshell, lorry: Seg
 
 
 def test_a_shell_is_cut_as_by_brute_force_over_all_lines(item: Divisible) -> None:
-    load, stops = 135.0, item.tracks.stops()
+    load, stops = 135.0, item.grid.stops()
 
     @cache
     def grams(a: int, b: int) -> int | None:
-        if a // 2 == b // 2 or not item.tracks.owned(a, b):
+        if a // 2 == b // 2 or not item.grid.owned(a, b):
             return None
-        kilos = run_between(item, a, b).mass
+        kilos = stretch_between(item, a, b).mass
         return round(1000.0 * kilos) if kilos <= load else None
 
     def beams(stop: int) -> int:
-        return sum(splice.kind == "block" for splice in run_splices(item, stop))
+        return sum(splice.kind == "block" for splice in stop_splices(item, stop))
 
     found = []
     for inner in (cuts for n in range(3) for cuts in itertools.combinations(stops[1:-1], n)):
@@ -170,11 +170,11 @@ def test_a_shell_is_cut_as_by_brute_force_over_all_lines(item: Divisible) -> Non
 
 
 def test_what_lies_between_two_cuts_also_lies_between_wider_ones(item: Divisible) -> None:
-    stops = item.tracks.stops()
+    stops = item.grid.stops()
     for a, b in ((6, 13), (7, 12), (8, 17)):
-        inner, i, j = run_between(item, a, b), stops.index(a), stops.index(b)
+        inner, i, j = stretch_between(item, a, b), stops.index(a), stops.index(b)
         for c, d in ((stops[i - 1], b), (a, stops[j + 1])):
-            outer = run_between(item, c, d)
+            outer = stretch_between(item, c, d)
             assert {m for m in inner.parts if "-W" not in m} <= set(outer.parts)
             assert outer.mass > inner.mass - 1e-9
 
@@ -287,19 +287,19 @@ def test_a_closed_ring_is_opened_by_two_cuts_at_least(column: Gridshell) -> None
     owned = [mark for segment in plan.segments for mark in segment.geodesics]
     assert sorted(owned) == sorted(p.mark for p in column.shells[0].planks if p.family == "G")
     check_each_part_once(column, plan)
-    whole = run_between(divisible(column.shells[0], column.timber), 2, 2 + 2 * 24)
+    whole = stretch_between(divisible(column.shells[0], column.timber), 2, 2 + 2 * 24)
     assert not whole.pieces
     # The centre of gravity of a closed ring is on its axis; bolts and screws are turned to one side, which is little.
     assert whole.centre[:2] == pytest.approx((0.0, 0.0), abs=5.0)
 
 
 def test_corners_reach_as_far_as_the_meshes_of_all_that_travels(single: Gridshell, item: Divisible) -> None:
-    run = run_between(item, 2, 29)
-    meshes = [shell_mesh(part).vertices for part in shell_parts(single.shells[0]) if part.mark in set(run.parts)]
+    stretch = stretch_between(item, 2, 29)
+    meshes = [shell_mesh(part).vertices for part in shell_parts(single.shells[0]) if part.mark in set(stretch.parts)]
     points = np.concatenate(meshes)
     # Both sample planks, at 60 and at 120 mm: the sagitta of 120 mm at 1.7 m is 1.1 mm.
-    assert run.corners.min(axis=0) == pytest.approx(points.min(axis=0), abs=1.1)
-    assert run.corners.max(axis=0) == pytest.approx(points.max(axis=0), abs=1.1)
+    assert stretch.corners.min(axis=0) == pytest.approx(points.min(axis=0), abs=1.1)
+    assert stretch.corners.max(axis=0) == pytest.approx(points.max(axis=0), abs=1.1)
 
 
 def test_the_shipped_transport_carries_the_shells_whole(design: Design, gridshell: Gridshell) -> None:
