@@ -7,9 +7,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from pydantic import ValidationError, model_validator
 
-from aag_cad.design_base import Section
+from aag_cad.design_base import DesignTable
 from aag_cad.design_making import Boundary, Crew, Facade, Joints, Ridge, Stock, Supports, Timber, Transport
-from aag_cad.design_sections import (
+from aag_cad.design_tables import (
     LevelShells,
     Optimise,
     Pattern,
@@ -31,7 +31,7 @@ _KINDS = {"surface": ("profile", "crpc, catenoid, hyperboloid, arc, spline"), "s
 Rules: TypeAlias = tuple[tuple[bool, str], ...]
 
 
-class Design(Section):
+class Design(DesignTable):
     """One design file."""
 
     project: Project

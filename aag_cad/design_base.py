@@ -15,7 +15,7 @@ Text: TypeAlias = Annotated[
 Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]*$", max_length=40)]
 
 
-class Section(BaseModel):
+class DesignTable(BaseModel):
     """A table of the design file: extra keys are refused, values never change."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, StringConstraints
 
-from aag_cad.design_base import Count, NotNegative, Number, Positive, Section, Text
+from aag_cad.design_base import Count, DesignTable, NotNegative, Number, Positive, Text
 from aag_cad.resources import template
 
 
@@ -18,7 +18,7 @@ def _iso_date(value: str) -> str:
     return value
 
 
-class Strength(Section):
+class Strength(DesignTable):
     """Characteristic values of an EN 338 class, N/mm2 and kg/m3."""
 
     f_m: Positive
@@ -33,7 +33,7 @@ class Strength(Section):
     rho_mean: Positive
 
 
-class Timber(Section):
+class Timber(DesignTable):
     """Species, strength class and the one cross-section of all planks."""
 
     species: Text
@@ -51,7 +51,7 @@ class Timber(Section):
             return Strength(**tomllib.load(file)[self.strength_class])
 
 
-class Joints(Section):
+class Joints(DesignTable):
     """Gap, studs, bolts, screws and coupling blocks: the hole patterns of EN 1995-1-1, tables 8.2 and 8.4."""
 
     gap: Positive
@@ -78,7 +78,7 @@ class Joints(Section):
         return self.slot_length if self.stud_hole == "slot" else 0.0
 
 
-class Boundary(Section):
+class Boundary(DesignTable):
     """Ends of planks and what stays free at the ridges."""
 
     end_gap: NotNegative
@@ -88,7 +88,7 @@ class Boundary(Section):
     ridge_gap: NotNegative
 
 
-class Facade(Section):
+class Facade(DesignTable):
     """Polycarbonate sheets between aluminium bars on the geodesics, screwed to the coupling blocks."""
 
     cover: Annotated[bool, Field(strict=True)] = Field(True, description="false leaves the gridshell uncovered")
@@ -118,7 +118,7 @@ class Facade(Section):
         return self.mullion[1] + 2.0 * self.seal + self.sheet_thickness + self.clamp[1]
 
 
-class Ridge(Section):
+class Ridge(DesignTable):
     """The steel at the top: straps on the ends of geodesics, blades between shells at those ends or equally spaced."""
 
     blades: Literal["geodesics", "equal"] = "geodesics"
@@ -129,7 +129,7 @@ class Ridge(Section):
     strap_thickness: Positive = 3.0
 
 
-class Supports(Section):
+class Supports(DesignTable):
     """What stands under the foot of each geodesic, and the loads that the blocks are checked for."""
 
     foot_height: Positive
@@ -143,7 +143,7 @@ class Supports(Section):
     friction: Annotated[Number, Field(gt=0, le=1)] = Field(0.6, description="of the blocks on the ground")
 
 
-class Transport(Section):
+class Transport(DesignTable):
     """The largest piece that travels, and what the crane on site lifts, kg; without ``crane`` nothing limits it."""
 
     length: Positive
@@ -156,7 +156,7 @@ class Transport(Section):
     crane: Positive | None = Field(None, description="kg that the crane lifts as far out as the shells stand")
 
 
-class Minutes(Section):
+class Minutes(DesignTable):
     """Minutes of work of one person, by what is done: our estimate, to be replaced by measured times.
 
     Bolts and screws are those of timber and steel joints; a part is also carried to its place, by its length.
@@ -192,7 +192,7 @@ class Minutes(Section):
     measure: NotNegative = Field(8.0, description="measure a plank for its reuse passport")
 
 
-class Crew(Section):
+class Crew(DesignTable):
     """Who assembles it, and how long a day."""
 
     people: Annotated[Count, Field(ge=1, le=40)]
@@ -208,7 +208,7 @@ class Crew(Section):
     )
 
 
-class Stock(Section):
+class Stock(DesignTable):
     """What the workshop buys timber, metal bars and sheets in, and how it saws them.
 
     A board is cut to length first and then split into planks of one length; shorter twins are cut back afterwards.

@@ -10,7 +10,7 @@ import numpy as np
 
 from aag_cad.audit import audit
 from aag_cad.design import Design
-from aag_cad.design_sections import (
+from aag_cad.design_tables import (
     ArcSurface,
     CatenoidSurface,
     CrpcSurface,

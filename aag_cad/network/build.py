@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from aag_cad.design import Design
-from aag_cad.design_sections import LevelShells
+from aag_cad.design_tables import LevelShells
 from aag_cad.errors import NetworkError
 from aag_cad.families import BEAMS
 from aag_cad.geometry.framed import FramedCurve, framed_curve, nearest_station

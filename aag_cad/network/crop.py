@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from aag_cad.design import Design
-from aag_cad.design_sections import LevelShells
+from aag_cad.design_tables import LevelShells
 from aag_cad.errors import NetworkError
 from aag_cad.families import BEAMS, EDGES, FAMILIES, GEODESICS, Family
 from aag_cad.geometry.framed import FramedCurve, frames_at

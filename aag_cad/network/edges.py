@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from aag_cad.design import Design
-from aag_cad.design_sections import LevelShells
+from aag_cad.design_tables import LevelShells
 from aag_cad.errors import NetworkError
 from aag_cad.geometry.surface import Chart
 from aag_cad.network.crop import SCREW_END_DISTANCE

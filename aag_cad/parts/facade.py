@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from aag_cad.design import Design
-from aag_cad.design_sections import LevelShells
+from aag_cad.design_tables import LevelShells
 from aag_cad.errors import DesignError
 from aag_cad.families import GEODESICS
 from aag_cad.geometry.developable import ruled_edges, shared_range

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from aag_cad.design import Design
-from aag_cad.design_sections import Optimise
+from aag_cad.design_tables import Optimise
 from aag_cad.geometry.revolution import AsymptoticChart
 from aag_cad.geometry.surface import Jet
 from aag_cad.units import Floats

@@ -12,14 +12,14 @@ from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Gridshell
 from assembly.base.steps import Plan, Step
 from assembly.booklet.cards import Weights, step_card, totals
+from assembly.booklet.drawn_pages import Made, laying_pages, locking_pages, map_pages, segment_pages
 from assembly.booklet.gantt import gantt_svg
 from assembly.booklet.qr import qr_svg
-from assembly.booklet.sheets import Made, laying_sheets, locking_sheets, map_sheets, segment_sheets
 from assembly.booklet.step_words import step_title
 from assembly.booklet.words import booklet_words, finding_lines
 from assembly.drawing.joint_sections import block_section_svg, node_section_svg
 from assembly.drawing.perspective import perspective_svg
-from assembly.pictures.backgrounds import Sheets, sheets_of, shell_twins
+from assembly.pictures.backgrounds import Backgrounds, backgrounds_of, shell_twins
 from assembly.pictures.scenes import home_shell, legend_svgs, phase_svg, picture_key, step_pictures
 from assembly.pictures.site_scenes import key_svg
 from assembly.plan.piece_weights import piece_weights, segment_weights
@@ -122,16 +122,16 @@ def _card_words(kind: Kind, words: Mapping[str, Any], step: Step, card: Mapping[
 
 
 def _cards(
-    kind: Kind, words: Mapping[str, Any], plan: Plan, sheets: Sheets, common: Common, pictures: dict[str, str]
+    kind: Kind, words: Mapping[str, Any], plan: Plan, backgrounds: Backgrounds, common: Common, pictures: dict[str, str]
 ) -> Iterator[dict[str, Any]]:
     """Yield the cards of all steps; their pictures are added to ``pictures``, those of steps alike only once."""
-    gridshell, drawn = sheets.gridshell, dict[tuple[object, ...], list[str]]()
+    gridshell, drawn = backgrounds.gridshell, dict[tuple[object, ...], list[str]]()
     parts = index_of(gridshell).parts
     for step in plan.steps:
         card = step_card(gridshell, plan, step, parts, common.weights, common.language)
-        key = picture_key(sheets, step)
+        key = picture_key(backgrounds, step)
         if key not in drawn:
-            made = {f"step-{step.number}-{i}": picture for i, picture in enumerate(step_pictures(sheets, step))}
+            made = {f"step-{step.number}-{i}": picture for i, picture in enumerate(step_pictures(backgrounds, step))}
             pictures |= made
             drawn[key] = list(made)
         pictures[f"qr-{step.number}"] = qr_svg(card["qr"])
@@ -151,20 +151,20 @@ def common_of(gridshell: Gridshell, language: Language) -> Common:
     swatches = {f"legend-{name}": picture for name, picture in legend_svgs().items()}
     keys = {f"key-{shell.mark}": key_svg(gridshell, shell.mark) for shell in gridshell.shells}
     pictures = {"vault": perspective_svg(gridshell)} | swatches | keys
-    maps, drawn = map_sheets(gridshell, shell_twins(gridshell), language)
+    maps, drawn = map_pages(gridshell, shell_twins(gridshell), language)
     return Common(gridshell, piece_weights(gridshell), pictures | drawn, maps, language)
 
 
-def _booklet(kind: Kind, planned: Planned, common: Common) -> tuple[Booklet, Sheets]:
+def _booklet(kind: Kind, planned: Planned, common: Common) -> tuple[Booklet, Backgrounds]:
     """Return what both booklets have: cover, words, list of steps, schedule, cards."""
     up = kind == "sequence"
     plan, schedule = (planned.plan, planned.schedule) if up else (planned.down, planned.down_schedule)
     gridshell, pictures = common.gridshell, dict(common.pictures)
     common = replace(common, weights={**common.weights, **segment_weights(gridshell, planned.segmentation)})
     slides = [slide for order in planned.orders.values() for slide in order.slides]
-    words, sheets = (
+    words, backgrounds = (
         _sheet_words(kind, common.language),
-        sheets_of(plan, gridshell, planned.segmentation, slides, common.language),
+        backgrounds_of(plan, gridshell, planned.segmentation, slides, common.language),
     )
     pictures["schedule"] = gantt_svg(
         plan, schedule, f"{gridshell.title}: {words['schedule']['title']}", common.language
@@ -178,7 +178,7 @@ def _booklet(kind: Kind, planned: Planned, common: Common) -> tuple[Booklet, She
         "cover": _cover(words, plan, schedule, common),
         "chapters": _listing(words, plan, common.language),
         "schedule": "schedule",
-        "cards": list(_cards(kind, words, plan, sheets, common, pictures)),
+        "cards": list(_cards(kind, words, plan, backgrounds, common, pictures)),
         "phases": [],
         "sections": [],
         "layings": [],
@@ -187,38 +187,38 @@ def _booklet(kind: Kind, planned: Planned, common: Common) -> tuple[Booklet, She
         "findings": finding_lines(worst_first(plan.findings), common.language),
         **common.maps,
     }
-    return Booklet(data, pictures), sheets
+    return Booklet(data, pictures), backgrounds
 
 
-def _how(words: Mapping[str, Any], plan: Plan, sheets: Sheets, cards: Sequence[Mapping[str, Any]]) -> Made:
+def _how(words: Mapping[str, Any], plan: Plan, backgrounds: Backgrounds, cards: Sequence[Mapping[str, Any]]) -> Made:
     """Return the phases of the first shell, one picture each, and the sections through the joints."""
-    first = sheets.gridshell.shells[0]
+    first = backgrounds.gridshell.shells[0]
     lasts = {step.phase: step for step in plan.steps if step.shell == first.mark}
     names = {card["phase"]: name for card in cards for name, now in card["phases"] if now}
-    pictures = {f"phase-{i}": phase_svg(sheets, plan, step) for i, step in enumerate(lasts.values())}
+    pictures = {f"phase-{i}": phase_svg(backgrounds, plan, step) for i, step in enumerate(lasts.values())}
     phases = [
         {"picture": f"phase-{i}", "name": names[phase], "told": words["told"].get(phase, "")}
         for i, phase in enumerate(lasts)
     ]
     sections = {}
     if first.studs:
-        sections["node"] = node_section_svg(first, language=sheets.language)
+        sections["node"] = node_section_svg(first, language=backgrounds.language)
     if first.blocks and first.screws:
-        sections["block"] = block_section_svg(first, language=sheets.language)
+        sections["block"] = block_section_svg(first, language=backgrounds.language)
     return {"phases": phases, "sections": list(sections)}, pictures | sections
 
 
 def sequence_booklet(planned: Planned, common: Common) -> Booklet:
     """Return the booklet of putting together, in the language of ``common``."""
     plan, gridshell = planned.plan, common.gridshell
-    booklet, sheets = _booklet("sequence", planned, common)
+    booklet, backgrounds = _booklet("sequence", planned, common)
     words, cards = booklet.data["words"], booklet.data["cards"]
     data, pictures = dict(booklet.data), dict(booklet.pictures)
     for more, drawn in (
-        _how(words, plan, sheets, cards),
-        laying_sheets(gridshell, planned, sheets.twins, common.language),
-        locking_sheets(planned.locking, sheets.twins, common.language),
-        segment_sheets(gridshell, planned.segmentation, common.language),
+        _how(words, plan, backgrounds, cards),
+        laying_pages(gridshell, planned, backgrounds.twins, common.language),
+        locking_pages(planned.locking, backgrounds.twins, common.language),
+        segment_pages(gridshell, planned.segmentation, common.language),
     ):
         data |= more
         pictures |= drawn

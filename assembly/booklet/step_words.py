@@ -17,7 +17,7 @@ from assembly.base.steps import (
     Step,
     WholeShell,
 )
-from assembly.booklet.segment_sheet import brace_text
+from assembly.booklet.segment_cards import brace_text
 
 _KINDS = {"W": "screw", "B": "bolt", "K": "block", "R": "strap", "N": "stud"}
 _NOTES = "{notes}"

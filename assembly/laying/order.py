@@ -15,8 +15,8 @@ import numpy as np
 from aag_cad.families import EDGES
 from aag_cad.parts.model import Gridshell, Shell, Stud
 from aag_cad.units import MM_PER_M, Floats, Vector
-from assembly.base.crew import LONG_PIECE
 from assembly.base.errors import PlanError
+from assembly.base.lifters import LONG_PIECE
 from assembly.base.shell_axes import best_plane, shell_view, sweep_direction
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import Interlacing, Slide, interlacing, refuse_left_out

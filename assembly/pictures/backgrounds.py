@@ -38,7 +38,7 @@ ON_GROUND = (Footing, Rod, Shoe)
 
 
 @dataclass(frozen=True, eq=False)
-class Sheets:
+class Backgrounds:
     """The outlines that the pictures of a gridshell are drawn from, and what is in place before each step.
 
     ``twins`` gives for each shell the first one that is alike but for its number; ``large`` and ``small`` are the
@@ -151,13 +151,13 @@ def ridge_planks(gridshell: Gridshell, pair: Sequence[str]) -> tuple[str, ...]:
     return min((gap, ends) for ends, gap in gaps.items())[1] if gaps else ()
 
 
-def sheets_of(
+def backgrounds_of(
     plan: Plan,
     gridshell: Gridshell,
     segmentation: Segmentation | None = None,
     slides: Iterable[Slide] = (),
     language: Language = "en",
-) -> Sheets:
+) -> Backgrounds:
     """Return all outlines, drawn once for all steps of a plan of putting together or of taking down.
 
     ``segmentation`` is needed where shells stand in segments, ``slides`` where planks are slid in.
@@ -165,7 +165,7 @@ def sheets_of(
     twins = shell_twins(gridshell)
     firsts = [shell for shell in gridshell.shells if twins[shell.mark] == shell.mark]
     down = any(is_down(step.phase) for step in plan.steps)
-    return Sheets(
+    return Backgrounds(
         gridshell=gridshell,
         twins=twins,
         large={shell.mark: shell_outline(shell, PAGE_WIDTH, MARGIN, ON_SHELLS) for shell in firsts},

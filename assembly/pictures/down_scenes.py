@@ -8,7 +8,7 @@ from aag_cad.parts.model import Plank, Shell
 from assembly.base.steps import Step
 from assembly.drawing.bench import beam_strips_svg
 from assembly.drawing.steel_sections import strap_section_svg
-from assembly.pictures.backgrounds import PAGE_WIDTH, Sheets
+from assembly.pictures.backgrounds import PAGE_WIDTH, Backgrounds
 from assembly.pictures.named_marks import feet_of, middle_of, numbers_of
 from assembly.pictures.site_scenes import elevation_svg, foot_sections
 from assembly.pictures.step_pictures import Scene, scene_svg
@@ -107,21 +107,26 @@ def down_scene(shell: Shell, step: Step, there: frozenset[str], outer: set[str])
             return Scene(there=(), new=_planks_of(shell, beams), names=_short(beams), starts=beams)
 
 
-def down_pictures(sheets: Sheets, shell: Shell, step: Step, there: frozenset[str], outer: set[str]) -> tuple[str, ...]:
+def down_pictures(
+    backgrounds: Backgrounds, shell: Shell, step: Step, there: frozenset[str], outer: set[str]
+) -> tuple[str, ...]:
     """Return the SVG pictures of a step of taking down one shell: the large one first."""
     scene = down_scene(shell, step, there, outer)
     if step.phase in ("unbolt", "pull studs"):
         strips = beam_strips_svg(shell, _beams_of(shell, step), PAGE_WIDTH)
-        return strips, scene_svg(sheets.small[shell.mark], scene)
+        return strips, scene_svg(backgrounds.small[shell.mark], scene)
     edges = scene.names if step.phase == "pull edge planks" else ()
-    large = scene_svg(sheets.large[shell.mark], scene, [mark for mark in edges if mark in step.marks])
+    large = scene_svg(backgrounds.large[shell.mark], scene, [mark for mark in edges if mark in step.marks])
     match step.phase:
         case "hang" | "lower":
             return large, elevation_svg(shell, sling_points(shell), flat=step.phase == "lower")
         case "lift off":
-            return (large, *foot_sections(shell, sheets.language, _SHOE_SECTIONS))
+            return (large, *foot_sections(shell, backgrounds.language, _SHOE_SECTIONS))
         case "pull edge planks":
             straps = [strap for strap in shell.straps if strap.mark in step.marks]
-            return (large, *(strap_section_svg(shell, strap, language=sheets.language) for strap in middle_of(straps)))
+            return (
+                large,
+                *(strap_section_svg(shell, strap, language=backgrounds.language) for strap in middle_of(straps)),
+            )
         case _:
             return (large,)

@@ -1,7 +1,7 @@
 """The floor plan of a shell laid flat, to scale for a landscape page, and the table of coordinates to set it out by.
 
 Made for black-and-white printers: lower beams are two black planks, geodesics hollow strips over them, upper beams two
-dashed planks over both. Coordinates as in ``assembly.laying.flattening``; on the sheet y runs up.
+dashed planks over both. Coordinates as in ``assembly.laying.flattening``; on the paper y runs up.
 """
 
 from collections.abc import Callable, Iterator
@@ -59,8 +59,8 @@ _TRIANGLE = 26.0
 
 
 @dataclass(frozen=True)
-class _Sheet:
-    """The scale 1 : n and where floor points (k, 2) come on the sheet; ``low`` and ``high`` are shown corners, mm."""
+class _Paper:
+    """The scale 1 : n and where floor points (k, 2) come on the paper; ``low`` and ``high`` are shown corners, mm."""
 
     n: int
     low: tuple[float, float]
@@ -83,7 +83,7 @@ def _stacks(state: FlatState, order: FlatOrder | None) -> dict[str, Floats]:
     return {family: np.array(place) + state.view_origin for family, place in own}
 
 
-def _sheet(state: FlatState, stacks: dict[str, Floats], page: Page) -> _Sheet:
+def _paper(state: FlatState, stacks: dict[str, Floats], page: Page) -> _Paper:
     shown = np.array([(0.0, 0.0), state.size, *stacks.values()])
     low, high = shown.min(axis=0), shown.max(axis=0)
     wide, tall = PAGES[page]
@@ -96,10 +96,10 @@ def _sheet(state: FlatState, stacks: dict[str, Floats], page: Page) -> _Sheet:
             f"{needed:.0f} on {page.upper()}, at most 1 : {SCALES[-1]}; take a larger page"
         )
     height = float((high - low)[1]) * _UNITS_PER_MM / fitting[0] + _TOP + _BOTTOM
-    return _Sheet(fitting[0], (float(low[0]), float(low[1])), (float(high[0]), float(high[1])), wide, height)
+    return _Paper(fitting[0], (float(low[0]), float(low[1])), (float(high[0]), float(high[1])), wide, height)
 
 
-def _grid(state: FlatState, sheet: _Sheet) -> tuple[str, list[Box]]:
+def _grid(state: FlatState, paper: _Paper) -> tuple[str, list[Box]]:
     """Return the lines of whole metres over the floor and its edge, with their numbers and the boxes of those."""
     x, y = state.size
     lines: list[str] = []
@@ -109,11 +109,11 @@ def _grid(state: FlatState, sheet: _Sheet) -> tuple[str, list[Box]]:
         for metre in range(last + 1):
             at = metre * MM_PER_M
             ends = np.array([(at, 0.0), (at, y)] if axis == 0 else [(0.0, at), (x, at)])
-            lines.append(path(sheet(ends), closed=False))
-            place = sheet(ends)[0] + ([0.0, 32.0] if axis == 0 else [-42.0, 0.0])
+            lines.append(path(paper(ends), closed=False))
+            place = paper(ends)[0] + ([0.0, 32.0] if axis == 0 else [-42.0, 0.0])
             words = f"{metre} m" if metre == last else str(metre)
             numbers.append(Label(words, float(place[0]), float(place[1]), _GRID_NUMBER))
-    edge = path(sheet(np.array([(0.0, 0.0), (x, 0.0), (x, y), (0.0, y)])))
+    edge = path(paper(np.array([(0.0, 0.0), (x, 0.0), (x, y), (0.0, y)])))
     texts = (text(label.text, label.x, label.y, label.size) for label in numbers)
     return group(lines, _GRID) + group([edge], _FLOOR) + group(texts, _INK), [label_box(label) for label in numbers]
 
@@ -127,43 +127,43 @@ def _planks(member: FlatMember, thickness: float) -> Iterator[Floats]:
         yield np.concatenate([a, (a + inwards * (b - a))[::-1]])
 
 
-def _members(shell: Shell, state: FlatState, sheet: _Sheet) -> Iterator[str]:
+def _members(shell: Shell, state: FlatState, paper: _Paper) -> Iterator[str]:
     thickness = shell.planks[0].blank.section.thickness
     for member in state.members:
         colour = LEGEND[member.family]
         if member.layer == 0:
-            yield group([path(sheet(outline_of(member)))], Style(colour, "#000", 2.0))
+            yield group([path(paper(outline_of(member)))], Style(colour, "#000", 2.0))
         elif member.layer < 0:
-            yield group((path(sheet(plank)) for plank in _planks(member, thickness)), Style(colour, colour, 1.5))
+            yield group((path(paper(plank)) for plank in _planks(member, thickness)), Style(colour, colour, 1.5))
         else:
             # A dashed outline of so thin a plank would be a blot: its middle line is dashed instead.
             half = member.points.shape[0] * 2
             middles = ((p[: half // 2] + p[half // 2 :][::-1]) / 2.0 for p in _planks(member, thickness))
-            yield group((path(sheet(middle), closed=False) for middle in middles), Style("none", colour, 4.0, "13 7"))
+            yield group((path(paper(middle), closed=False) for middle in middles), Style("none", colour, 4.0, "13 7"))
 
 
-def _start(member: FlatMember, sheet: _Sheet) -> tuple[Floats, Floats]:
-    """Return the start of a member on the sheet and the direction (2,) out of it."""
-    ends = sheet(member.points[:2])
+def _start(member: FlatMember, paper: _Paper) -> tuple[Floats, Floats]:
+    """Return the start of a member on the paper and the direction (2,) out of it."""
+    ends = paper(member.points[:2])
     return ends[0], (ends[0] - ends[1]) / np.linalg.norm(ends[0] - ends[1])
 
 
-def _triangle_points(member: FlatMember, sheet: _Sheet) -> Floats:
-    start, out = _start(member, sheet)
+def _triangle_points(member: FlatMember, paper: _Paper) -> Floats:
+    start, out = _start(member, paper)
     across = np.array([-out[1], out[0]])
     tip, base = start + 5.0 * out, start + (5.0 + _TRIANGLE) * out
     return np.array([tip, base + 0.45 * _TRIANGLE * across, base - 0.45 * _TRIANGLE * across])
 
 
-def _names(state: FlatState, sheet: _Sheet, page: Box, taken: list[Box]) -> tuple[str, list[Box]]:
+def _names(state: FlatState, paper: _Paper, page: Box, taken: list[Box]) -> tuple[str, list[Box]]:
     """Return the framed marks, of beams at their start ends and of geodesics at the others, and their boxes."""
     wanted = []
-    triangles = [_triangle_points(member, sheet) for member in state.members]
+    triangles = [_triangle_points(member, paper) for member in state.members]
     taken = [*taken, *((*points.min(axis=0).tolist(), *points.max(axis=0).tolist()) for points in triangles)]
     for member in sorted(state.members, key=lambda member: member.layer == 0):
-        start, out = _start(member, sheet)
+        start, out = _start(member, paper)
         if member.layer == 0:
-            start, out = sheet(member.points)[-1], -out
+            start, out = paper(member.points)[-1], -out
         across = np.array([-out[1], out[0]])
         aways = [(66.0, 0.0), (62.0, 45.0), (62.0, -45.0), (95.0, 0.0), (90.0, 55.0), (90.0, -55.0), (130.0, 0.0)]
         aways = [(32.0, 0.0), *aways, (-40.0, 0.0), (-90.0, 0.0)] if member.layer == 0 else aways
@@ -173,31 +173,31 @@ def _names(state: FlatState, sheet: _Sheet, page: Box, taken: list[Box]) -> tupl
     return label_svg(labels), [label_box(label) for label in labels]
 
 
-def _studs(state: FlatState, sheet: _Sheet, page: Box, taken: list[Box]) -> str:
-    places = {mark: sheet(point[None])[0] for mark, point in state.studs.items()}
+def _studs(state: FlatState, paper: _Paper, page: Box, taken: list[Box]) -> str:
+    places = {mark: paper(point[None])[0] for mark, point in state.studs.items()}
     wanted = [(number_of(mark), places_round(place, 29.0)) for mark, place in places.items()]
     dots = [(x - 9.0, y - 9.0, x + 9.0, y + 9.0) for x, y in (place.tolist() for place in places.values())]
     labels = placed_labels(wanted, _NUMBER, page, [*taken, *dots])
     return label_svg(labels, framed=False) + group((circle(place, 8.0) for place in places.values()), _STUD)
 
 
-def _swatch(x: float, y: float, sheet: _Sheet, family: Family, shell: Shell, width: float) -> str:
+def _swatch(x: float, y: float, paper: _Paper, family: Family, shell: Shell, width: float) -> str:
     """Return a short piece of a member as the plan draws it."""
-    k = sheet.n / _UNITS_PER_MM
+    k = paper.n / _UNITS_PER_MM
     ends = np.array([(0.0, 0.0), (90.0 * k, 0.0)])
     member = FlatMember("", family, FAMILIES[family].layer, width, np.zeros(2), ends, ("", ""))
     alone = FlatState("", (member,), {}, {}, {}, (0.0, 0.0), None, 0.0, 0.0, {}, 0.0, 0.0, "", 0.0, ())
-    shapes = "".join(_members(shell, alone, _Sheet(sheet.n, (0.0, 0.0), (0.0, 0.0), _LEFT + _RIGHT, _BOTTOM)))
+    shapes = "".join(_members(shell, alone, _Paper(paper.n, (0.0, 0.0), (0.0, 0.0), _LEFT + _RIGHT, _BOTTOM)))
     return f'<g transform="translate({x - _LEFT:.1f} {y:.1f})">{shapes}</g>'
 
 
-def _key(shell: Shell, state: FlatState, sheet: _Sheet, language: Language) -> Iterator[str]:
+def _key(shell: Shell, state: FlatState, paper: _Paper, language: Language) -> Iterator[str]:
     """Yield the line below the plan: what is drawn how, the scale and the size of the floor."""
     widths = {member.family: member.width for member in state.members}
-    y, x = sheet.height - 94.0, 20.0
+    y, x = paper.height - 94.0, 20.0
     for layer, family in LAYERS.items():
         if family in widths:
-            yield _swatch(x, y, sheet, family, shell, widths[family])
+            yield _swatch(x, y, paper, family, shell, widths[family])
             words = say(language, f"drawings.plan.{LAYER_WORDS[layer]}", family=family)
             yield group([text(words, x + 105.0, y, _WORDS, "start")], _INK)
             x += 150.0 + 0.602 * _WORDS * len(words)
@@ -212,13 +212,13 @@ def _key(shell: Shell, state: FlatState, sheet: _Sheet, language: Language) -> I
         yield shape()
         yield group([text(words, x + 45.0, y, _WORDS, "start")], _INK)
         x += 90.0 + 0.602 * _WORDS * len(words)
-    yield from _scale_bar(state, sheet, language)
+    yield from _scale_bar(state, paper, language)
 
 
-def _scale_bar(state: FlatState, sheet: _Sheet, language: Language) -> Iterator[str]:
-    y, metre = sheet.height - 32.0, _UNITS_PER_MM * MM_PER_M / sheet.n
+def _scale_bar(state: FlatState, paper: _Paper, language: Language) -> Iterator[str]:
+    y, metre = paper.height - 32.0, _UNITS_PER_MM * MM_PER_M / paper.n
     yield group(
-        [text(say(language, "drawings.plan.scale", n=sheet.n), 20.0, y, 1.3 * _WORDS, "start", bold=True)], _INK
+        [text(say(language, "drawings.plan.scale", n=paper.n), 20.0, y, 1.3 * _WORDS, "start", bold=True)], _INK
     )
     x, count = 230.0, 3
     for i in range(count):
@@ -243,22 +243,22 @@ def laying_plan_svg(
     the floor is too large for the page.
     """
     stacks = _stacks(state, order)
-    sheet = _sheet(state, stacks, page)
-    box: Box = (0.0, 0.0, sheet.width, sheet.height - 105.0)
+    paper = _paper(state, stacks, page)
+    box: Box = (0.0, 0.0, paper.width, paper.height - 105.0)
     feet = sorted(state.foot.values(), key=lambda point: float(point[0]))
-    grid, taken = _grid(state, sheet)
+    grid, taken = _grid(state, paper)
     items = [grid]
     if len(feet) > 1:
-        items.append(line(sheet(np.array(feet)), _FOOT))
-    items += _members(shell, state, sheet)
+        items.append(line(paper(np.array(feet)), _FOOT))
+    items += _members(shell, state, paper)
     solid = [m for m in state.members if m.layer <= 0]
-    items.append(group((path(_triangle_points(m, sheet)) for m in solid), _INK))
-    items.append(group((path(_triangle_points(m, sheet)) for m in state.members if m.layer > 0), _HOLLOW))
-    piles, boxes = _piles(stacks, sheet, language)
+    items.append(group((path(_triangle_points(m, paper)) for m in solid), _INK))
+    items.append(group((path(_triangle_points(m, paper)) for m in state.members if m.layer > 0), _HOLLOW))
+    piles, boxes = _piles(stacks, paper, language)
     taken += boxes
-    names, boxes = _names(state, sheet, box, taken)
-    items += [piles, _studs(state, sheet, box, [*boxes, *taken]), names]
-    corner = sheet(np.zeros((1, 2)))[0]
+    names, boxes = _names(state, paper, box, taken)
+    items += [piles, _studs(state, paper, box, [*boxes, *taken]), names]
+    corner = paper(np.zeros((1, 2)))[0]
     items.append(
         group(
             [
@@ -268,19 +268,19 @@ def laying_plan_svg(
             _INK,
         )
     )
-    return svg(sheet.width, sheet.height, [*items, *_key(shell, state, sheet, language)])
+    return svg(paper.width, paper.height, [*items, *_key(shell, state, paper, language)])
 
 
-def _piles(stacks: dict[str, Floats], sheet: _Sheet, language: Language) -> tuple[str, list[Box]]:
+def _piles(stacks: dict[str, Floats], paper: _Paper, language: Language) -> tuple[str, list[Box]]:
     """Return the stacks beside the floor, those in the same place side by side, and their boxes."""
     boxes: list[Box] = []
     shapes, end = "", -np.inf
     for family, place in sorted(stacks.items(), key=lambda item: (round(float(item[1][1])), float(item[1][0]))):
-        x, y = sheet(place[None])[0].tolist()
+        x, y = paper(place[None])[0].tolist()
         words = say(language, "drawings.plan.stack", family=family)
         half = 0.602 * _WORDS * len(words) / 2.0 + 14.0
         beside = bool(boxes) and abs(y - (boxes[-1][1] + boxes[-1][3]) / 2.0) < 50.0
-        x = max(x, end + half + 8.0) if beside else min(max(x, half), sheet.width - half)
+        x = max(x, end + half + 8.0) if beside else min(max(x, half), paper.width - half)
         end = x + half
         boxes.append((x - half, y - 24.0, x + half, y + 24.0))
         shapes += group([rectangle(x - half, y - 24.0, 2.0 * half, 48.0)], _STACK)

@@ -16,7 +16,7 @@ from assembly.drawing.outline import shell_outline
 from assembly.drawing.steel_sections import strap_section_svg
 from assembly.drawing.svg import group, path, svg
 from assembly.graph.interlacing import Slide
-from assembly.pictures.backgrounds import MARGIN, PAGE_WIDTH, Sheets, sheets_of, twin_step
+from assembly.pictures.backgrounds import MARGIN, PAGE_WIDTH, Backgrounds, backgrounds_of, twin_step
 from assembly.pictures.down_scenes import down_pictures
 from assembly.pictures.named_marks import middle_of, numbers_of
 from assembly.pictures.segment_scenes import cut_outline, moved_segments, segment_scene
@@ -26,12 +26,12 @@ from assembly.plan.shape_control import control_figures, sling_points
 
 __all__ = [
     "PAGE_WIDTH",
-    "Sheets",
+    "Backgrounds",
+    "backgrounds_of",
     "home_shell",
     "legend_svgs",
     "phase_svg",
     "picture_key",
-    "sheets_of",
     "step_pictures",
 ]
 
@@ -133,71 +133,71 @@ def home_shell(step: Step) -> str:
     return step.shell
 
 
-def _twinned(sheets: Sheets, step: Step) -> tuple[Shell, Step, frozenset[str]]:
+def _twinned(backgrounds: Backgrounds, step: Step) -> tuple[Shell, Step, frozenset[str]]:
     """Return the shell whose picture serves for a step, the step with its marks, and what is there before it."""
     home = home_shell(step)
-    twin = sheets.twins[home]
-    shell = index_of(sheets.gridshell).shells[twin]
-    there = {in_other_shell(mark, home, twin) for mark in sheets.before[step.id] if is_in_shell(mark, home)}
+    twin = backgrounds.twins[home]
+    shell = index_of(backgrounds.gridshell).shells[twin]
+    there = {in_other_shell(mark, home, twin) for mark in backgrounds.before[step.id] if is_in_shell(mark, home)}
     return shell, twin_step(step, home, twin), frozenset(there)
 
 
-def _segment_pictures(sheets: Sheets, step: Step, segmentation: Segmentation) -> tuple[str, ...]:
+def _segment_pictures(backgrounds: Backgrounds, step: Step, segmentation: Segmentation) -> tuple[str, ...]:
     """Return the pictures of a step with segments of a shell: the shell square on, and its plan where it stands."""
-    shell = index_of(sheets.gridshell).shells[step.assemblies[0]]
+    shell = index_of(backgrounds.gridshell).shells[step.assemblies[0]]
     outline = cut_outline(shell_outline(shell, PAGE_WIDTH, MARGIN), shell, segmentation)
-    picture = scene_svg(outline, segment_scene(shell, step, segmentation, sheets.stood[step.id]))
-    return (picture, *(foot_sections(shell, sheets.language) if step.phase == "stand" and step.marks else ()))
+    picture = scene_svg(outline, segment_scene(shell, step, segmentation, backgrounds.stood[step.id]))
+    return (picture, *(foot_sections(shell, backgrounds.language) if step.phase == "stand" and step.marks else ()))
 
 
-def picture_key(sheets: Sheets, step: Step) -> tuple[object, ...]:
+def picture_key(backgrounds: Backgrounds, step: Step) -> tuple[object, ...]:
     """Return what the pictures of a step depend on: steps of shells alike have the same, and the same pictures."""
     if not home_shell(step) or step.phase == "divide":
         return (step.id,)
-    shell, twin, there = _twinned(sheets, step)
+    shell, twin, there = _twinned(backgrounds, step)
     return shell.mark, twin.phase, twin.marks, twin.assemblies, twin.propped, there
 
 
-def step_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
+def step_pictures(backgrounds: Backgrounds, step: Step) -> tuple[str, ...]:
     """Return the SVG pictures of a step of putting together or of taking down: the large one first."""
-    if step.phase in ("ridges", "open ridges") and step.assemblies in sheets.ridges:
-        return ridge_pictures(sheets, step)
-    if sheets.segmentation and (step.phase == "divide" or moved_segments(step, sheets.segmentation)):
-        return _segment_pictures(sheets, step, sheets.segmentation)
+    if step.phase in ("ridges", "open ridges") and step.assemblies in backgrounds.ridges:
+        return ridge_pictures(backgrounds, step)
+    if backgrounds.segmentation and (step.phase == "divide" or moved_segments(step, backgrounds.segmentation)):
+        return _segment_pictures(backgrounds, step, backgrounds.segmentation)
     if not home_shell(step):
         sections = (
-            foot_sections(sheets.gridshell.shells[0], sheets.language)
+            foot_sections(backgrounds.gridshell.shells[0], backgrounds.language)
             if step.phase in ("feet", "clear feet", "stand")
             else ()
         )
-        return (site_svg(sheets, step), *sections)
-    shell, step, there = _twinned(sheets, step)
+        return (site_svg(backgrounds, step), *sections)
+    shell, step, there = _twinned(backgrounds, step)
     if is_down(step.phase):
-        return down_pictures(sheets, shell, step, there, driven_from_outside(shell))
+        return down_pictures(backgrounds, shell, step, there, driven_from_outside(shell))
     if step.phase == "cover":
-        return (scene_svg(sheets.large[shell.mark], _cover_scene(shell, step, there)),)
-    scene = _shell_scene(shell, step, there, sheets.slides)
+        return (scene_svg(backgrounds.large[shell.mark], _cover_scene(shell, step, there)),)
+    scene = _shell_scene(shell, step, there, backgrounds.slides)
     if step.phase == "prefabricate":
         strips = beam_strips_svg(shell, _made_beams(shell, step), PAGE_WIDTH)
-        return strips, scene_svg(sheets.small[shell.mark], scene)
+        return strips, scene_svg(backgrounds.small[shell.mark], scene)
     edges = scene.names if step.phase == "edge planks" else ()
-    large = scene_svg(sheets.large[shell.mark], scene, [mark for mark in edges if mark in step.marks])
+    large = scene_svg(backgrounds.large[shell.mark], scene, [mark for mark in edges if mark in step.marks])
     if step.phase == "hoist":
         return large, elevation_svg(shell)
     straps = [strap for strap in shell.straps if strap.mark in step.marks]
-    return (large, *(strap_section_svg(shell, strap, language=sheets.language) for strap in middle_of(straps)))
+    return (large, *(strap_section_svg(shell, strap, language=backgrounds.language) for strap in middle_of(straps)))
 
 
-def phase_svg(sheets: Sheets, plan: Plan, step: Step) -> str:
+def phase_svg(backgrounds: Backgrounds, plan: Plan, step: Step) -> str:
     """Return a small picture without words of the first shell as a step leaves it."""
-    shell = index_of(sheets.gridshell).shells[step.shell]
-    scene = _shell_scene(shell, step, sheets.before[step.id], sheets.slides)
+    shell = index_of(backgrounds.gridshell).shells[step.shell]
+    scene = _shell_scene(shell, step, backgrounds.before[step.id], backgrounds.slides)
     same = [s for s in plan.steps if s.shell == step.shell and s.phase == step.phase]
-    scenes = [_shell_scene(shell, s, frozenset(), sheets.slides) for s in same]
+    scenes = [_shell_scene(shell, s, frozenset(), backgrounds.slides) for s in same]
     new = {mark for each in scenes for mark in each.new}
     dots = [mark for each in scenes for mark in (*each.dots, *(each.rings if step.phase == "fix geodesics" else ()))]
     there = {plank for plank in scene.there if plank not in new}
-    return scene_svg(sheets.small[shell.mark], Scene(there=there, new=new, dots=dots))
+    return scene_svg(backgrounds.small[shell.mark], Scene(there=there, new=new, dots=dots))
 
 
 def legend_svgs() -> dict[str, str]:

@@ -12,7 +12,7 @@ from assembly.base.steps import Step
 from assembly.drawing.outline import Outline, elevation_outline, vault_outline
 from assembly.drawing.steel_sections import blade_section_svg, foot_section_svg
 from assembly.drawing.svg import Label, Style, circle, group, label_svg, line, path, svg, text
-from assembly.pictures.backgrounds import MARGIN, ON_GROUND, SMALL_WIDTH, Sheets, ridge_planks
+from assembly.pictures.backgrounds import MARGIN, ON_GROUND, SMALL_WIDTH, Backgrounds, ridge_planks
 from assembly.pictures.named_marks import feet_of, middle_of, numbers_of
 from assembly.pictures.step_pictures import Scene, scene_items
 from assembly.plan.shape_control import control_figures
@@ -44,14 +44,17 @@ def _site_scene(gridshell: Gridshell, step: Step, there: frozenset[str]) -> Scen
             return Scene(there={mark for listed in planks.values() for mark in listed} | grounded)
 
 
-def site_svg(sheets: Sheets, step: Step) -> str:
+def site_svg(backgrounds: Backgrounds, step: Step) -> str:
     """Return the plan of the whole with the name of each shell; with the axes where the feet are set out."""
-    sheet = sheets.plan
+    sheet = backgrounds.plan
     names = []
-    for shell in sheets.gridshell.shells:
+    for shell in backgrounds.gridshell.shells:
         place = np.mean([sheet.lines[plank.mark].mean(axis=0) for plank in shell.planks], axis=0)
         names.append(Label(shell.mark, float(place[0]), float(place[1]), _NAME_SIZE))
-    items = [*scene_items(sheet, _site_scene(sheets.gridshell, step, sheets.standing[step.id])), label_svg(names)]
+    items = [
+        *scene_items(sheet, _site_scene(backgrounds.gridshell, step, backgrounds.standing[step.id])),
+        label_svg(names),
+    ]
     if step.phase in ("feet", "clear feet"):
         x, y = sheet.origin.tolist()
         arms = (np.array([(x, y), (x + 90.0, y)]), np.array([(x, y), (x, y - 90.0)]))
@@ -66,10 +69,10 @@ def foot_sections(shell: Shell, language: Language, count: int = 2) -> tuple[str
     return tuple(foot_section_svg(shell, shoe, named=shoe is shoes[-1], language=language) for shoe in shoes)
 
 
-def ridge_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
+def ridge_pictures(backgrounds: Backgrounds, step: Step) -> tuple[str, ...]:
     """Return a ridge from above with the blades of a step, a section through a blade, and where the ridge is."""
-    gridshell = sheets.gridshell
-    outline, planks = sheets.ridges[step.assemblies], ridge_planks(gridshell, step.assemblies)
+    gridshell = backgrounds.gridshell
+    outline, planks = backgrounds.ridges[step.assemblies], ridge_planks(gridshell, step.assemblies)
     blades = [blade for blade in gridshell.blades if blade.mark in step.marks]
     scene = Scene(
         there=index_of(gridshell).planks.keys(),
@@ -79,8 +82,8 @@ def ridge_pictures(sheets: Sheets, step: Step) -> tuple[str, ...]:
         numbers={blade.mark: blade.mark for blade in blades},
     )
     picture = svg(outline.width, outline.height, scene_items(outline, scene))
-    cut = (blade_section_svg(gridshell, blade, language=sheets.language) for blade in middle_of(blades))
-    return (picture, *cut, site_svg(sheets, step))
+    cut = (blade_section_svg(gridshell, blade, language=backgrounds.language) for blade in middle_of(blades))
+    return (picture, *cut, site_svg(backgrounds, step))
 
 
 def _flat_line(shell: Shell, outline: Outline) -> tuple[np.ndarray, float]:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from aag_cad.parts.model import Gridshell
-from assembly.base.crew import crew_of, lifting_findings
+from assembly.base.lifters import lifters_of, lifting_findings
 from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Segmentation
 from assembly.base.steps import Plan
@@ -33,7 +33,7 @@ def plan_of(
     journey and joined again on site. PlanError if the layers are woven so that no plank can be slid in, a part belongs
     to no joint, or the crew is empty.
     """
-    crew, weights = crew_of(people, lift_limit), piece_weights(gridshell, segmentation)
+    lifters, weights = lifters_of(people, lift_limit), piece_weights(gridshell, segmentation)
     locked = {order.shell: order for order in locking}
     laid = orders if orders is not None else flat_orders(gridshell)
     works: list[Work] = []
@@ -47,8 +47,8 @@ def plan_of(
     craned = {*stiff, *segment_weights(gridshell, segmentation)}
     by_hand = {mark: weight for mark, weight in weights.items() if mark not in craned}
     findings = (
-        *lifting_findings(by_hand, crew),
+        *lifting_findings(by_hand, lifters),
         *(segment_findings(segmentation) if segmentation else ()),
         *(stiffness_findings(gridshell, segmentation) if segmentation else ()),
     )
-    return Plan(gridshell.name, tuple(steps_from(works, weights, crew)), findings)
+    return Plan(gridshell.name, tuple(steps_from(works, weights, lifters)), findings)

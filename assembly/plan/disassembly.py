@@ -13,7 +13,7 @@ from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import is_in_shell, shells_of
 from aag_cad.parts.model import Bolt, Gridshell, Rod, Shell, Strap, Timber
 from aag_cad.units import MM_PER_M
-from assembly.base.crew import crew_of
+from assembly.base.lifters import lifters_of
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.part_groups import Kit, shell_kit
 from assembly.base.phases import PHASE, DownPhase
@@ -248,7 +248,7 @@ def disassembly_of(
 
     PlanError if the layers are woven in a circle, a part belongs to no joint, or the crew is empty.
     """
-    crew, weights = crew_of(people, lift_limit), piece_weights(gridshell)
+    lifters, weights = lifters_of(people, lift_limit), piece_weights(gridshell)
     laid = orders if orders is not None else flat_orders(gridshell)
     kits = {shell.mark: shell_kit(shell) for shell in gridshell.shells}
     props = {shell.mark: props_under(prop_points(shell), shell.mark) for shell in gridshell.shells}
@@ -264,4 +264,4 @@ def disassembly_of(
         hung = list(_unlocking(down, shell.mark, flat, (lifts[shell.mark], *hoists)))
         hoists = (hung[-1].id,)
         works += [*hung, *_dismantling(down, shell, runs, hung[-1].id)]
-    return Plan(gridshell.name, tuple(steps_from(works, weights, crew)))
+    return Plan(gridshell.name, tuple(steps_from(works, weights, lifters)))

@@ -1,6 +1,6 @@
 """How long each step takes: the person-minutes of what is done in it, shared by its people.
 
-The times are those of ``[crew.minutes]`` in the design (``aag_cad.design_sections.Minutes``); as shipped they are our
+The times are those of ``[crew.minutes]`` in the design (``aag_cad.design_tables.Minutes``); as shipped they are our
 estimate, to be replaced by measured times.
 """
 

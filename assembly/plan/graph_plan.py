@@ -13,7 +13,7 @@ from aag_cad.findings import Finding
 from aag_cad.language import Figure, Text, text
 from aag_cad.parts.marks import short_mark
 from aag_cad.units import MM_PER_M
-from assembly.base.crew import crew_of, lifting_findings, named_marks
+from assembly.base.lifters import lifters_of, lifting_findings, named_marks
 from assembly.base.phases import Phase
 from assembly.base.steps import Plan
 from assembly.graph.interlacing import Interlacing, Slide, interlacing
@@ -192,7 +192,7 @@ def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float) -> P
     put in (AAG956), which is in no step, and what is heavy (AAG955). PlanError if the graph has faults, a part is tied
     to nothing, or the crew is empty.
     """
-    crew, woven, units = crew_of(people, lift_limit), interlacing(graph, later=()), units_of(graph)
+    lifters, woven, units = lifters_of(people, lift_limit), interlacing(graph, later=()), units_of(graph)
     order, kits = flat_order_of(graph, woven, later=()), _kits(graph, units)
     task, weights = _Task(graph, units, kits, woven, order), _weights(graph, kits, units)
     placed = {mark: unit for unit, kit in kits.items() for mark in kit}
@@ -200,8 +200,8 @@ def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float) -> P
     step_of: dict[str, str] = {}
     works = [*_laying(task, step_of), *_sliding(task, step_of), *_joining(task, found, step_of)]
     lifted = {mark: weight for mark, weight in weights.items() if mark not in woven.left_out}
-    findings = (*woven.findings, *_waiting(waiting), *lifting_findings(lifted, crew))
-    return Plan(str(graph.name), tuple(steps_from(works, weights, crew)), findings)
+    findings = (*woven.findings, *_waiting(waiting), *lifting_findings(lifted, lifters))
+    return Plan(str(graph.name), tuple(steps_from(works, weights, lifters)), findings)
 
 
 # Keys of ``Minutes`` by the words for kinds; what the table does not know takes the time of a bolt.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import chain
 
 from aag_cad.language import Text
-from assembly.base.crew import Crew, hands_for
+from assembly.base.lifters import Lifters, hands_for
 from assembly.base.phases import PHASE, Phase
 from assembly.base.steps import Extra, Step, StepProp, carried
 
@@ -45,7 +45,7 @@ def props_under(joints: Iterable[str], holds: str) -> tuple[StepProp, ...]:
     return tuple(StepProp(joint, holds) for joint in dict.fromkeys(joints))
 
 
-def steps_from(works: Sequence[Work], weights: Mapping[str, tuple[float, float]], crew: Crew) -> Iterator[Step]:
+def steps_from(works: Sequence[Work], weights: Mapping[str, tuple[float, float]], lifters: Lifters) -> Iterator[Step]:
     """Yield works as steps, numbered, with the hands for their heaviest and longest piece.
 
     ``weights`` are (kg, mm) of parts, beams, shells and segments. The last step of each phase in a chapter ends with a
@@ -55,7 +55,7 @@ def steps_from(works: Sequence[Work], weights: Mapping[str, tuple[float, float]]
     for number, work in enumerate(works, start=1):
         row = PHASE[work.phase]
         pieces = [weights[mark] for mark in carried(work.phase, work.marks, work.assemblies, work.segments)]
-        hands = hands_for(crew, max((m for m, _ in pieces), default=0.0), max((n for _, n in pieces), default=0.0))
+        hands = hands_for(lifters, max((m for m, _ in pieces), default=0.0), max((n for _, n in pieces), default=0.0))
         yield Step(
             number=number,
             id=work.id,
@@ -65,7 +65,7 @@ def steps_from(works: Sequence[Work], weights: Mapping[str, tuple[float, float]]
             marks=work.marks,
             assemblies=work.assemblies,
             segments=work.segments,
-            crew=max(hands.people, min(work.least_crew, crew.people)),
+            crew=max(hands.people, min(work.least_crew, lifters.people)),
             gear=hands.gear and not row.lifts,
             predecessors=work.after,
             card=work.card,

@@ -17,7 +17,7 @@ from assembly.drawing.joint_sections import block_section_svg, node_section_svg
 from assembly.drawing.outline import ridge_outline, shell_outline, vault_outline
 from assembly.drawing.steel_sections import blade_section_svg, foot_section_svg, strap_section_svg
 from assembly.drawing.svg import Box, label_box, number, placed_labels, places_round
-from assembly.pictures.backgrounds import PAGE_WIDTH, Sheets, sheets_of
+from assembly.pictures.backgrounds import PAGE_WIDTH, Backgrounds, backgrounds_of
 from assembly.pictures.scenes import step_pictures
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.shape_control import control_figures, outer_end, sling_points
@@ -41,8 +41,8 @@ def plan(gridshell: Gridshell) -> Plan:
 
 
 @pytest.fixture(scope="module")
-def sheets(plan: Plan, gridshell: Gridshell) -> Sheets:
-    return sheets_of(plan, gridshell)
+def backgrounds(plan: Plan, gridshell: Gridshell) -> Backgrounds:
+    return backgrounds_of(plan, gridshell)
 
 
 @given(coordinates)
@@ -82,32 +82,32 @@ def test_a_geodesic_is_drawn_in_its_true_width_where_it_is_seen_square_on(shell:
     assert 99.0 <= widest <= np.hypot(100.0, 12.0)
 
 
-def test_pictures_are_well_formed_and_small(plan: Plan, sheets: Sheets) -> None:
+def test_pictures_are_well_formed_and_small(plan: Plan, backgrounds: Backgrounds) -> None:
     for step in plan.steps:
         if step.shell in ("S1", ""):
-            for svg in step_pictures(sheets, step):
+            for svg in step_pictures(backgrounds, step):
                 ElementTree.fromstring(svg)
                 assert len(svg) < 150_000
 
 
-def test_new_beams_and_planks_are_named_in_their_picture(plan: Plan, sheets: Sheets) -> None:
+def test_new_beams_and_planks_are_named_in_their_picture(plan: Plan, backgrounds: Backgrounds) -> None:
     for step in plan.steps:
         if step.shell == "S1" and step.phase.startswith("lay"):
-            (svg,) = step_pictures(sheets, step)
+            (svg,) = step_pictures(backgrounds, step)
             assert {unit[3:] for unit in (*step.assemblies, *step.marks)} == set(words(svg))
 
 
-def test_every_stud_of_a_step_is_numbered_in_its_picture(plan: Plan, sheets: Sheets) -> None:
+def test_every_stud_of_a_step_is_numbered_in_its_picture(plan: Plan, backgrounds: Backgrounds) -> None:
     for step in plan.steps:
         if step.shell == "S1" and step.phase == "studs":
-            (svg,) = step_pictures(sheets, step)
+            (svg,) = step_pictures(backgrounds, step)
             assert sorted(words(svg)) == sorted(mark[-3:] for mark in step.marks if mark.count("-") == 2)
 
 
-def test_numbers_in_the_crowded_pictures_hardly_cover_each_other(plan: Plan, sheets: Sheets) -> None:
+def test_numbers_in_the_crowded_pictures_hardly_cover_each_other(plan: Plan, backgrounds: Backgrounds) -> None:
     for step in plan.steps:
         if step.shell == "S1" and step.phase in ("studs", "fix geodesics"):
-            (svg,) = step_pictures(sheets, step)
+            (svg,) = step_pictures(backgrounds, step)
             plates = [
                 tuple(float(rect.attrib[key]) for key in ("x", "y", "width", "height"))
                 for rect in ElementTree.fromstring(svg).iter(f"{SVG}rect")

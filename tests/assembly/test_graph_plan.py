@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from aag_cad.design_making import Minutes
 from aag_cad.language import printed
 from aag_cad.parts.model import Gridshell
-from assembly.base.crew import Crew, lifting_findings
 from assembly.base.errors import PlanError
+from assembly.base.lifters import Lifters, lifting_findings
 from assembly.base.steps import Plan, Step
 from assembly.booklet.plan_file import plan_json
 from assembly.checks.graph_plan import check_graph_plan
@@ -247,12 +247,12 @@ def test_what_a_crew_cannot_lift_is_told_once_for_each_mass() -> None:
         "S1-A1-01": (30.0, 5000.0),
         "S1-G-01": (9.0, 4000.0),
     }
-    heavy, shared = lifting_findings(weights, Crew(4, 25.0))
+    heavy, shared = lifting_findings(weights, Lifters(4, 25.0))
     assert (heavy.code, heavy.severity, heavy.mark) == ("AAG955", "warning", "C-01, C-02")
     assert (heavy.found, heavy.allowed) == (109.4, 100.0)
     assert "5 people" in heavy.text
     assert (shared.code, shared.severity, shared.mark, shared.found, shared.allowed) == (
         "AAG955", "note", "S1-A1-01", 30.0, 25.0,
     )  # fmt: skip
-    assert lifting_findings(weights, Crew(1, 200.0)) == ()
-    assert "Person" in printed(lifting_findings(weights, Crew(1, 25.0))[0].what, "de")
+    assert lifting_findings(weights, Lifters(1, 200.0)) == ()
+    assert "Person" in printed(lifting_findings(weights, Lifters(1, 25.0))[0].what, "de")

@@ -9,7 +9,7 @@ import pytest
 from pydantic import ValidationError
 
 from aag_cad.design import Design
-from aag_cad.design_sections import Site
+from aag_cad.design_tables import Site
 from aag_cad.export.ifc.model import ifc_model
 from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcOptions, IfcSchema
 from aag_cad.export.ifc.site import degrees_minutes_seconds, true_north

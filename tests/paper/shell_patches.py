@@ -5,7 +5,7 @@ from dataclasses import replace
 from patches import Patch, cropped, cropped_by_plane, flipped, intersected, polar_array
 
 from aag_cad.design import Design
-from aag_cad.design_sections import LevelShells, MirrorShells
+from aag_cad.design_tables import LevelShells, MirrorShells
 from aag_cad.geometry.profiles import SplineProfile
 from aag_cad.geometry.revolution import AsymptoticChart
 from aag_cad.network.edges import bottom_coordinate, top_coordinate

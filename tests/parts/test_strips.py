@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from aag_cad.design import Design
-from aag_cad.design_sections import CrpcSurface
+from aag_cad.design_tables import CrpcSurface
 from aag_cad.geometry.developable import ruled_edges
 from aag_cad.geometry.framed import FramedCurve, framed_curve
 from aag_cad.geometry.revolution import AsymptoticChart

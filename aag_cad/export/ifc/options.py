@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
-from aag_cad.design_sections import Site
+from aag_cad.design_tables import Site
 from aag_cad.errors import DesignError
 
 IfcSchema: TypeAlias = Literal["IFC4", "IFC4X3_ADD2", "IFC2X3"]

@@ -2,7 +2,7 @@
 
 import math
 
-from aag_cad.design_sections import Site
+from aag_cad.design_tables import Site
 from aag_cad.export.ifc.frame import Entity, IfcModel, aggregate, local_placement, rooted
 from aag_cad.export.ifc.sets import Property, write_property_set
 from aag_cad.parts.model import Gridshell

@@ -14,7 +14,7 @@ from aag_cad.parts.quantities import hole_count, largest_twist, mass, material_n
 from aag_cad.units import deg_per_m
 from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Segmentation
-from assembly.booklet.segment_sheet import SEGMENTS_HEADER, SPLICES_HEADER, segment_rows, splice_rows
+from assembly.booklet.segment_cards import SEGMENTS_HEADER, SPLICES_HEADER, segment_rows, splice_rows
 from assembly.pictures.locking_chart import LOCKING_HEADER, locking_rows
 
 PARTS_HEADER = (

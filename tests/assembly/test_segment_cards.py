@@ -9,7 +9,7 @@ import pytest
 from aag_cad.language import LANGUAGES, Language, printed
 from aag_cad.parts.model import Gridshell
 from assembly.base.segments import Limits, Segmentation, splices_of
-from assembly.booklet.segment_sheet import (
+from assembly.booklet.segment_cards import (
     SEGMENTS_HEADER,
     SPLICES_HEADER,
     brace_text,

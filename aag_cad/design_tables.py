@@ -4,10 +4,10 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from aag_cad.design_base import Count, Name, NotNegative, Number, Positive, Section, Text
+from aag_cad.design_base import Count, DesignTable, Name, NotNegative, Number, Positive, Text
 
 
-class Project(Section):
+class Project(DesignTable):
     """What the files are called and who made them."""
 
     name: Name = Field(description="used in file names: lower-case letters, digits, - and _")
@@ -16,7 +16,7 @@ class Project(Section):
     organisation: str = ""
 
 
-class CrpcSurface(Section):
+class CrpcSurface(DesignTable):
     """Constant ratio of principal curvatures: k_meridian = -ratio * k_parallel."""
 
     profile: Literal["crpc"]
@@ -24,14 +24,14 @@ class CrpcSurface(Section):
     ratio: Annotated[Number, Field(gt=0.05, le=20)]
 
 
-class CatenoidSurface(Section):
+class CatenoidSurface(DesignTable):
     """The catenoid: crpc with ratio 1."""
 
     profile: Literal["catenoid"]
     neck_radius: Positive
 
 
-class HyperboloidSurface(Section):
+class HyperboloidSurface(DesignTable):
     """Hyperboloid of one sheet r = neck_radius cosh u, z = semi_axis sinh u."""
 
     profile: Literal["hyperboloid"]
@@ -39,7 +39,7 @@ class HyperboloidSurface(Section):
     semi_axis: Positive
 
 
-class ArcSurface(Section):
+class ArcSurface(DesignTable):
     """A meridian of one radius: a start for the optimiser, not CRPC."""
 
     profile: Literal["arc"]
@@ -47,7 +47,7 @@ class ArcSurface(Section):
     meridian_radius: Positive
 
 
-class SplineSurface(Section):
+class SplineSurface(DesignTable):
     """Meridian through points (radius, height), lowest first, from below the ground line z = 0 to the top."""
 
     profile: Literal["spline"]
@@ -59,7 +59,7 @@ SurfaceSection: TypeAlias = Annotated[
 ]
 
 
-class RidgeShells(Section):
+class RidgeShells(DesignTable):
     """Three or more shells about the centre, intersected and cropped where they meet (paper, Fig. 2d)."""
 
     top: Literal["ridge"] = "ridge"
@@ -68,7 +68,7 @@ class RidgeShells(Section):
     sector_deg: Annotated[Number, Field(gt=0, lt=180)]
 
 
-class MirrorShells(Section):
+class MirrorShells(DesignTable):
     """A shell cropped by the vertical plane through the centre, and its mirror image (paper, Fig. 2b)."""
 
     top: Literal["mirror"]
@@ -77,7 +77,7 @@ class MirrorShells(Section):
     sector_deg: Annotated[Number, Field(gt=0, le=120)]
 
 
-class LevelShells(Section):
+class LevelShells(DesignTable):
     """Shells cropped along parallel circles, open in sectors or closed about their axis (paper, Fig. 2a and c)."""
 
     top: Literal["level"]
@@ -104,7 +104,7 @@ ShellsSection: TypeAlias = Annotated[
 ]
 
 
-class Pattern(Section):
+class Pattern(DesignTable):
     """The tri-hex pattern."""
 
     geodesics: Annotated[Count, Field(ge=4, le=200, multiple_of=2)]
@@ -114,7 +114,7 @@ class Pattern(Section):
     node_clearance_ridge: NotNegative = 150.0
 
 
-class Site(Section):
+class Site(DesignTable):
     """Where the gridshell stands: names, and how vault coordinates lie in a projected coordinate system.
 
     The origin of the vault (its centre on the ground line) has the eastings, northings and height given, in metres.
@@ -156,7 +156,7 @@ class Site(Section):
         return self
 
 
-class Optimise(Section):
+class Optimise(DesignTable):
     """What the web is optimised for before it is built; without this table it is built as it is."""
 
     node_angle_deg: Annotated[Number, Field(gt=0, lt=180)] = Field(

@@ -1,4 +1,4 @@
-"""Sheets of the booklet that are no cards: maps of the marks, laying plans, locking, segments."""
+"""Pages of the booklet that are no cards: maps of the marks, laying plans, locking, segments."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -8,7 +8,7 @@ from aag_cad.parts.model import Gridshell, Shell
 from assembly.base.locking_order import LockingOrder
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.segments import Segmentation
-from assembly.booklet.segment_sheet import segment_cards
+from assembly.booklet.segment_cards import segment_cards
 from assembly.pictures.label_map import MAP_SIZE, label_map_svg
 from assembly.pictures.layer_legend import layer_legend_svg
 from assembly.pictures.laying_plan import laying_header, laying_plan_svg, laying_rows
@@ -37,34 +37,34 @@ def _firsts(gridshell: Gridshell, twins: Mapping[str, str]) -> Iterator[tuple[Sh
     yield from ((shell, names[shell.mark]) for shell in gridshell.shells if shell.mark in names)
 
 
-def map_sheets(gridshell: Gridshell, twins: Mapping[str, str], language: Language) -> Made:
+def map_pages(gridshell: Gridshell, twins: Mapping[str, str], language: Language) -> Made:
     """Return the maps of the marks of each kind of shell, the first with the legend of the layers."""
-    sheets, pictures = [], dict[str, str]()
+    pages, pictures = [], dict[str, str]()
     for shell, names in _firsts(gridshell, twins):
         for i, families in enumerate(_MAPS):
             picture, legend = f"map-{shell.mark}-{i}", f"layers-{shell.mark}" if i == 0 else ""
             pictures[picture] = label_map_svg(shell, families, language, _MAP_SIZES[i])
             if legend:
                 pictures[legend] = layer_legend_svg(shell, language)
-            sheets.append({
+            pages.append({
                 "title": say(language, "booklet.map.title" if i == 0 else "booklet.map.blocks", shells=names),
                 "note": say(language, "booklet.map.note", prefix=shell.mark),
                 "picture": picture,
                 "legend": legend,
             })  # fmt: skip
-    return {"maps": sheets}, pictures
+    return {"maps": pages}, pictures
 
 
-def laying_sheets(gridshell: Gridshell, planned: Planned, twins: Mapping[str, str], language: Language) -> Made:
+def laying_pages(gridshell: Gridshell, planned: Planned, twins: Mapping[str, str], language: Language) -> Made:
     """Return the flat laying plans with their coordinates, of members and of single points; and their pictures."""
-    sheets, pictures = [], dict[str, str]()
+    pages, pictures = [], dict[str, str]()
     for shell, names in _firsts(gridshell, twins):
         if shell.mark not in planned.flat:
             continue
         state, order = planned.flat[shell.mark], planned.orders[shell.mark]
         pictures[f"laying-{shell.mark}"] = laying_plan_svg(shell, state, order, language)
         rows, head = laying_rows(shell, state, language), laying_header(language)
-        sheets.append({
+        pages.append({
             "title": say(language, "booklet.laying.title", shells=names),
             "table_title": say(language, "booklet.laying.table", shells=names),
             "note": say(language, "booklet.laying.note"),
@@ -72,30 +72,30 @@ def laying_sheets(gridshell: Gridshell, planned: Planned, twins: Mapping[str, st
             "members": {"head": list(head), "rows": [list(row) for row in rows if row[-1]]},
             "points": {"head": [*head[:2], "x mm", "y mm"], "rows": [list(row[:4]) for row in rows if not row[-1]]},
         })  # fmt: skip
-    return {"layings": sheets}, pictures
+    return {"layings": pages}, pictures
 
 
-def locking_sheets(orders: Sequence[LockingOrder], twins: Mapping[str, str], language: Language) -> Made:
+def locking_pages(orders: Sequence[LockingOrder], twins: Mapping[str, str], language: Language) -> Made:
     """Return the locking order of each kind of shell as table and plot."""
-    names, sheets, pictures = alike(twins), [], dict[str, str]()
+    names, pages, pictures = alike(twins), [], dict[str, str]()
     for order in (order for order in orders if order.shell in names):
         pictures[f"locking-{order.shell}"] = locking_svg(order, language)
         price = figure(f"{100.0 * order.rule_price:.1f}", language)
-        sheets.append({
+        pages.append({
             "title": say(language, "booklet.locking.title", shells=names[order.shell]),
             "picture": f"locking-{order.shell}",
             "table": locking_table(order, language),
             "price": say(language, "booklet.locking.price", price=price) if order.edges_first else "",
             "hoists": say(language, "booklet.locking.hoists", joints=joined_ranges(order.hoists)),
         })  # fmt: skip
-    return {"lockings": sheets}, pictures
+    return {"lockings": pages}, pictures
 
 
-def segment_sheets(gridshell: Gridshell, segmentation: Segmentation, language: Language) -> Made:
-    """Return the sheets of all segments, one each, with their pictures."""
-    sheets, pictures = [], dict[str, str]()
+def segment_pages(gridshell: Gridshell, segmentation: Segmentation, language: Language) -> Made:
+    """Return the pages of all segments, one each, with their pictures."""
+    pages, pictures = [], dict[str, str]()
     for segment, card in zip(segmentation.segments, segment_cards(segmentation, language), strict=True):
         name = f"segment-{segment.name.replace('.', '-')}"
         pictures[name] = segment_svg(gridshell, segmentation, segment, language)
-        sheets.append(card | {"picture": name})
-    return {"segments": sheets}, pictures
+        pages.append(card | {"picture": name})
+    return {"segments": pages}, pictures

@@ -15,21 +15,21 @@ LONG_PIECE = 3000.0
 
 
 @dataclass(frozen=True)
-class Crew:
-    """Who assembles: how many people at most, and what one of them may lift, kg."""
+class Lifters:
+    """Those who carry: how many people at most, and what one of them may lift, kg."""
 
     people: int
     lift_limit: float
 
 
-def crew_of(people: int, lift_limit: float) -> Crew:
-    """Return a crew; PlanError with the keys to mend if nobody is in it or nobody lifts anything."""
+def lifters_of(people: int, lift_limit: float) -> Lifters:
+    """Return the lifters; PlanError with the keys to mend if nobody is in it or nobody lifts anything."""
     if people < 1 or not lift_limit > 0.0:
         raise PlanError(
             f"crew: {people} people who lift {lift_limit:g} kg each; at least 1 person and more than 0 kg: "
             "mend crew.people and crew.lift_limit"
         )
-    return Crew(people, lift_limit)
+    return Lifters(people, lift_limit)
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,10 @@ class Hands:
     gear: bool
 
 
-def hands_for(crew: Crew, mass_kg: float, length_mm: float) -> Hands:
+def hands_for(lifters: Lifters, mass_kg: float, length_mm: float) -> Hands:
     """Return the hands for the heaviest and the longest piece of a step; a piece over 3 m takes two people."""
-    needed = max(math.ceil(mass_kg / crew.lift_limit), 2 if length_mm > LONG_PIECE else 1)
-    return Hands(min(needed, crew.people), mass_kg > crew.people * crew.lift_limit)
+    needed = max(math.ceil(mass_kg / lifters.lift_limit), 2 if length_mm > LONG_PIECE else 1)
+    return Hands(min(needed, lifters.people), mass_kg > lifters.people * lifters.lift_limit)
 
 
 def named_marks(marks: Sequence[str]) -> str:
@@ -54,7 +54,7 @@ def named_marks(marks: Sequence[str]) -> str:
         return ", ".join(marks)
 
 
-def lifting_findings(weights: Mapping[str, tuple[float, float]], crew: Crew) -> tuple[Finding, ...]:
+def lifting_findings(weights: Mapping[str, tuple[float, float]], lifters: Lifters) -> tuple[Finding, ...]:
     """Return what is heavy (AAG955): warnings for what the whole crew cannot lift, notes for what takes several people.
 
     ``weights`` are (kg, mm) by mark, as in ``assembly.plan.assembly_plan.piece_weights``. A warning names all pieces of
@@ -63,20 +63,20 @@ def lifting_findings(weights: Mapping[str, tuple[float, float]], crew: Crew) -> 
     heavy: dict[float, list[str]] = defaultdict(list)
     shared: dict[int, list[tuple[float, str]]] = defaultdict(list)
     for mark, (mass, _) in sorted(weights.items()):
-        needed = math.ceil(mass / crew.lift_limit)
-        if hands_for(crew, mass, 0.0).gear:
+        needed = math.ceil(mass / lifters.lift_limit)
+        if hands_for(lifters, mass, 0.0).gear:
             heavy[round(mass, 1)].append(mark)
         elif needed > 1:
             shared[needed].append((-mass, mark))
-    found, allowed = [], crew.people * crew.lift_limit
+    found, allowed = [], lifters.people * lifters.lift_limit
     for mass, marks in sorted(heavy.items(), reverse=True):
-        words = text("graph.plan.lifting.heavy" + "_one" * (crew.people == 1), people=crew.people)
-        needed = math.ceil(mass / crew.lift_limit)
+        words = text("graph.plan.lifting.heavy" + "_one" * (lifters.people == 1), people=lifters.people)
+        needed = math.ceil(mass / lifters.lift_limit)
         remedy = text("graph.plan.lifting.heavy_remedy", people=needed)
         found.append(Finding("AAG955", "warning", named_marks(marks), words, mass, allowed, "kg", remedy))
     for needed, listed in sorted(shared.items(), reverse=True):
         mass, mark = min(listed)
         words = text("graph.plan.lifting.shared", count=len(listed), people=needed)
         remedy = text("graph.plan.lifting.shared_remedy")
-        found.append(Finding("AAG955", "note", mark, words, -mass, crew.lift_limit, "kg", remedy))
+        found.append(Finding("AAG955", "note", mark, words, -mass, lifters.lift_limit, "kg", remedy))
     return tuple(found)
