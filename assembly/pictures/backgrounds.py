@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from aag_cad.language import Language
+from aag_cad.once import once
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import in_other_shell, short_mark
 from aag_cad.parts.mesh import frame_matrix
@@ -29,6 +30,7 @@ from assembly.base.steps import Plan, Step, StepProp
 from assembly.drawing.outline import Outline, ridge_outline, shell_outline, vault_outline
 from assembly.graph.interlacing import Slide
 from assembly.pictures.segment_scenes import stood_segments
+from assembly.plan.site_work import ridge_pairs
 
 PAGE_WIDTH = 1800.0
 SMALL_WIDTH = 880.0
@@ -38,20 +40,30 @@ ON_GROUND = (Footing, Rod, Shoe)
 
 
 @dataclass(frozen=True, eq=False)
-class Backgrounds:
-    """The outlines that the pictures of a gridshell are drawn from, and what is in place before each step.
+class Outlines:
+    """What the pictures of a gridshell are drawn on: its kinds of shells on a page and smaller, its plan, its ridges.
 
-    ``twins`` gives for each shell the first one that is alike but for its number; ``large`` and ``small`` are the
-    outlines of these. ``standing`` are the planks of the whole shells, ``stood``
-    the segments of cut ones, that stand on the site before each step; ``slides`` say how planks are slid in, by mark.
+    ``large`` and ``small`` are of the first shell of those that are alike; ``ridges`` go by the shells on either side.
     """
 
-    gridshell: Gridshell
-    twins: dict[str, str]
     large: dict[str, Outline]
     small: dict[str, Outline]
     plan: Outline
     ridges: dict[tuple[str, ...], Outline]
+
+
+@dataclass(frozen=True, eq=False)
+class Backgrounds:
+    """The outlines that the pictures of a gridshell are drawn from, and what is in place before each step.
+
+    ``twins`` gives for each shell the first one that is alike but for its number. ``standing`` are the planks of the
+    whole shells, ``stood`` the segments of cut ones, that stand on the site before each step; ``slides`` say how planks
+    are slid in, by mark.
+    """
+
+    gridshell: Gridshell
+    twins: dict[str, str]
+    outlines: Outlines
     before: dict[str, frozenset[str]]
     standing: dict[str, frozenset[str]]
     stood: dict[str, tuple[str, ...]]
@@ -151,6 +163,22 @@ def ridge_planks(gridshell: Gridshell, pair: Sequence[str]) -> tuple[str, ...]:
     return min((gap, ends) for ends, gap in gaps.items())[1] if gaps else ()
 
 
+@once
+def outlines_of(gridshell: Gridshell) -> Outlines:
+    """Return the outlines of a gridshell: they take a second, and all booklets draw on them."""
+    twins = shell_twins(gridshell)
+    firsts = [shell for shell in gridshell.shells if twins[shell.mark] == shell.mark]
+    facing = {pair: ridge_planks(gridshell, pair) for pair in ridge_pairs(gridshell)}
+    return Outlines(
+        large={shell.mark: shell_outline(shell, PAGE_WIDTH, MARGIN, ON_SHELLS) for shell in firsts},
+        small={shell.mark: shell_outline(shell, SMALL_WIDTH, MARGIN) for shell in firsts},
+        plan=vault_outline(gridshell, PAGE_WIDTH * 0.8, MARGIN, ON_GROUND),
+        ridges={
+            pair: ridge_outline(gridshell, planks, PAGE_WIDTH, MARGIN) for pair, planks in facing.items() if planks
+        },
+    )
+
+
 def backgrounds_of(
     plan: Plan,
     gridshell: Gridshell,
@@ -158,24 +186,15 @@ def backgrounds_of(
     slides: Iterable[Slide] = (),
     language: Language = "en",
 ) -> Backgrounds:
-    """Return all outlines, drawn once for all steps of a plan of putting together or of taking down.
+    """Return what the steps of a plan of putting together or of taking down are drawn on.
 
     ``segmentation`` is needed where shells stand in segments, ``slides`` where planks are slid in.
     """
-    twins = shell_twins(gridshell)
-    firsts = [shell for shell in gridshell.shells if twins[shell.mark] == shell.mark]
     down = any(is_down(step.phase) for step in plan.steps)
     return Backgrounds(
         gridshell=gridshell,
-        twins=twins,
-        large={shell.mark: shell_outline(shell, PAGE_WIDTH, MARGIN, ON_SHELLS) for shell in firsts},
-        small={shell.mark: shell_outline(shell, SMALL_WIDTH, MARGIN) for shell in firsts},
-        plan=vault_outline(gridshell, PAGE_WIDTH * 0.8, MARGIN, ON_GROUND),
-        ridges={
-            step.assemblies: ridge_outline(gridshell, pair, PAGE_WIDTH, MARGIN)
-            for step in plan.steps
-            if step.phase in ("ridges", "open ridges") and (pair := ridge_planks(gridshell, step.assemblies))
-        },
+        twins=shell_twins(gridshell),
+        outlines=outlines_of(gridshell),
         before=_still_there(plan, gridshell) if down else _in_place(plan, gridshell),
         standing=_standing(plan, gridshell, down),
         stood=stood_segments(plan, segmentation),

@@ -114,9 +114,9 @@ def down_pictures(
     scene = down_scene(shell, step, there, outer)
     if step.phase in ("unbolt", "pull studs"):
         strips = beam_strips_svg(shell, _beams_of(shell, step), PAGE_WIDTH)
-        return strips, scene_svg(backgrounds.small[shell.mark], scene)
+        return strips, scene_svg(backgrounds.outlines.small[shell.mark], scene)
     edges = scene.names if step.phase == "pull edge planks" else ()
-    large = scene_svg(backgrounds.large[shell.mark], scene, [mark for mark in edges if mark in step.marks])
+    large = scene_svg(backgrounds.outlines.large[shell.mark], scene, [mark for mark in edges if mark in step.marks])
     match step.phase:
         case "hang" | "lower":
             return large, elevation_svg(shell, sling_points(shell), flat=step.phase == "lower")

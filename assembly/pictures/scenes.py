@@ -160,7 +160,7 @@ def picture_key(backgrounds: Backgrounds, step: Step) -> tuple[object, ...]:
 
 def step_pictures(backgrounds: Backgrounds, step: Step) -> tuple[str, ...]:
     """Return the SVG pictures of a step of putting together or of taking down: the large one first."""
-    if step.phase in ("ridges", "open ridges") and step.assemblies in backgrounds.ridges:
+    if step.phase in ("ridges", "open ridges") and step.assemblies in backgrounds.outlines.ridges:
         return ridge_pictures(backgrounds, step)
     if backgrounds.segmentation and (step.phase == "divide" or moved_segments(step, backgrounds.segmentation)):
         return _segment_pictures(backgrounds, step, backgrounds.segmentation)
@@ -175,13 +175,13 @@ def step_pictures(backgrounds: Backgrounds, step: Step) -> tuple[str, ...]:
     if is_down(step.phase):
         return down_pictures(backgrounds, shell, step, there, driven_from_outside(shell))
     if step.phase == "cover":
-        return (scene_svg(backgrounds.large[shell.mark], _cover_scene(shell, step, there)),)
+        return (scene_svg(backgrounds.outlines.large[shell.mark], _cover_scene(shell, step, there)),)
     scene = _shell_scene(shell, step, there, backgrounds.slides)
     if step.phase == "prefabricate":
         strips = beam_strips_svg(shell, _made_beams(shell, step), PAGE_WIDTH)
-        return strips, scene_svg(backgrounds.small[shell.mark], scene)
+        return strips, scene_svg(backgrounds.outlines.small[shell.mark], scene)
     edges = scene.names if step.phase == "edge planks" else ()
-    large = scene_svg(backgrounds.large[shell.mark], scene, [mark for mark in edges if mark in step.marks])
+    large = scene_svg(backgrounds.outlines.large[shell.mark], scene, [mark for mark in edges if mark in step.marks])
     if step.phase == "hoist":
         return large, elevation_svg(shell)
     straps = [strap for strap in shell.straps if strap.mark in step.marks]
@@ -197,7 +197,7 @@ def phase_svg(backgrounds: Backgrounds, plan: Plan, step: Step) -> str:
     new = {mark for each in scenes for mark in each.new}
     dots = [mark for each in scenes for mark in (*each.dots, *(each.rings if step.phase == "fix geodesics" else ()))]
     there = {plank for plank in scene.there if plank not in new}
-    return scene_svg(backgrounds.small[shell.mark], Scene(there=there, new=new, dots=dots))
+    return scene_svg(backgrounds.outlines.small[shell.mark], Scene(there=there, new=new, dots=dots))
 
 
 def legend_svgs() -> dict[str, str]:

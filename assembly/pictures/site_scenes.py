@@ -46,7 +46,7 @@ def _site_scene(gridshell: Gridshell, step: Step, there: frozenset[str]) -> Scen
 
 def site_svg(backgrounds: Backgrounds, step: Step) -> str:
     """Return the plan of the whole with the name of each shell; with the axes where the feet are set out."""
-    sheet = backgrounds.plan
+    sheet = backgrounds.outlines.plan
     names = []
     for shell in backgrounds.gridshell.shells:
         place = np.mean([sheet.lines[plank.mark].mean(axis=0) for plank in shell.planks], axis=0)
@@ -72,7 +72,7 @@ def foot_sections(shell: Shell, language: Language, count: int = 2) -> tuple[str
 def ridge_pictures(backgrounds: Backgrounds, step: Step) -> tuple[str, ...]:
     """Return a ridge from above with the blades of a step, a section through a blade, and where the ridge is."""
     gridshell = backgrounds.gridshell
-    outline, planks = backgrounds.ridges[step.assemblies], ridge_planks(gridshell, step.assemblies)
+    outline, planks = backgrounds.outlines.ridges[step.assemblies], ridge_planks(gridshell, step.assemblies)
     blades = [blade for blade in gridshell.blades if blade.mark in step.marks]
     scene = Scene(
         there=index_of(gridshell).planks.keys(),
