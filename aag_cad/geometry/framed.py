@@ -24,6 +24,10 @@ class FramedCurve:
     points: Floats
     normals: Floats
 
+    def __repr__(self) -> str:
+        """Return length and number of samples."""
+        return f"FramedCurve of {self.length:.1f} mm, {len(self.stations)} samples"
+
     @property
     def length(self) -> float:
         """Arc length in mm."""

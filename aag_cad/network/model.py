@@ -57,3 +57,7 @@ class CurveNetwork:
 
     curves: tuple[NetworkCurve, ...]
     crossings: tuple[Crossing, ...]
+
+    def __repr__(self) -> str:
+        """Return how many curves and crossings there are."""
+        return f"CurveNetwork of {len(self.curves)} curves, {len(self.crossings)} crossings"

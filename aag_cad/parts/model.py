@@ -5,7 +5,7 @@ blank, x along it from its start, y across its width and z through its thickness
 ``curve(x) + y * width_direction(x) + z * thickness_direction(x)``: see ``aag_cad.parts.forming``.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, Protocol, TypeAlias
 
 from aag_cad.families import Family
@@ -75,7 +75,7 @@ class Blank:
 
     length: float
     section: CrossSection
-    holes: tuple[Hole, ...]
+    holes: tuple[Hole, ...] = field(repr=False)
     start_cut: EndCut = EndCut()
     end_cut: EndCut = EndCut()
 
@@ -101,9 +101,9 @@ class Plank:
     layer: int
     upright: bool
     beam: str
-    curve: FramedCurve
+    curve: FramedCurve = field(repr=False)
     blank: Blank
-    joints: tuple[JointStation, ...]
+    joints: tuple[JointStation, ...] = field(repr=False)
 
 
 @dataclass(frozen=True)
@@ -114,8 +114,8 @@ class Beam:
     family: Family
     layer: int
     planks: tuple[str, str]
-    curve: FramedCurve
-    joints: tuple[JointStation, ...]
+    curve: FramedCurve = field(repr=False)
+    joints: tuple[JointStation, ...] = field(repr=False)
 
 
 @dataclass(frozen=True)
@@ -135,10 +135,10 @@ class Stud:
     """
 
     mark: str
-    frame: Frame
+    frame: Frame = field(repr=False)
     length: float
     across_flats: float
-    holes: tuple[CrossHole, ...]
+    holes: tuple[CrossHole, ...] = field(repr=False)
 
 
 @dataclass(frozen=True)
@@ -149,11 +149,11 @@ class CouplingBlock:
     """
 
     mark: str
-    frame: Frame
+    frame: Frame = field(repr=False)
     length: float
     width: float
     thickness: float
-    holes: tuple[Hole, ...]
+    holes: tuple[Hole, ...] = field(repr=False)
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ class Bolt:
     """
 
     mark: str
-    frame: Frame
+    frame: Frame = field(repr=False)
     diameter: float
     length: float
     grip: float
@@ -180,7 +180,7 @@ class Screw:
     """A countersunk wood screw, head flush: ``frame.origin`` is the outer face of the plank, z points into it."""
 
     mark: str
-    frame: Frame
+    frame: Frame = field(repr=False)
     diameter: float
     length: float
     head_diameter: float
@@ -194,7 +194,7 @@ class Rod:
     """
 
     mark: str
-    frame: Frame
+    frame: Frame = field(repr=False)
     diameter: float
     length: float
     nuts: tuple[float, float]
@@ -215,11 +215,11 @@ class Strip:
     """
 
     mark: str
-    left: FramedCurve
-    right: FramedCurve
+    left: FramedCurve = field(repr=False)
+    right: FramedCurve = field(repr=False)
     thickness: float
-    lower: tuple[float, ...]
-    upper: tuple[float, ...]
+    lower: tuple[float, ...] = field(repr=False)
+    upper: tuple[float, ...] = field(repr=False)
     density: float = 170.0
 
 
@@ -228,7 +228,7 @@ class Mullion:
     """An aluminium bar along a geodesic, bent flat-ways over the outer beams; two strips lie on it."""
 
     mark: str
-    curve: FramedCurve
+    curve: FramedCurve = field(repr=False)
     blank: Blank
 
 
@@ -237,7 +237,7 @@ class ClampingBar:
     """An aluminium bar over a mullion that clamps the edges of the strips."""
 
     mark: str
-    curve: FramedCurve
+    curve: FramedCurve = field(repr=False)
     blank: Blank
 
 
@@ -246,7 +246,7 @@ class Strap:
     """A flat steel bar on the end of a geodesic and the edge plank that it stops at, bent flat-ways to both."""
 
     mark: str
-    curve: FramedCurve
+    curve: FramedCurve = field(repr=False)
     blank: Blank
 
 
@@ -258,8 +258,8 @@ class Shoe:
     """
 
     mark: str
-    frame: Frame
-    plate: FoldedPlate
+    frame: Frame = field(repr=False)
+    plate: FoldedPlate = field(repr=False)
 
 
 @dataclass(frozen=True)
@@ -267,7 +267,7 @@ class Footing:
     """A precast concrete block under a shoe; ``frame.origin`` is the centre of its top, z points up."""
 
     mark: str
-    frame: Frame
+    frame: Frame = field(repr=False)
     length: float
     width: float
     height: float
@@ -281,8 +281,8 @@ class Blade:
     """
 
     mark: str
-    frame: Frame
-    plate: FoldedPlate
+    frame: Frame = field(repr=False)
+    plate: FoldedPlate = field(repr=False)
 
 
 @dataclass(frozen=True)
@@ -297,8 +297,8 @@ class Joint:
 
     mark: str
     kind: JointKind
-    point: Vector
-    normal: Vector
+    point: Vector = field(repr=False)
+    normal: Vector = field(repr=False)
     members: tuple[str, ...]
     fasteners: tuple[str, ...]
 
@@ -327,6 +327,11 @@ class Shell:
     strips: tuple[Strip, ...] = ()
     clamps: tuple[ClampingBar, ...] = ()
     more: tuple[Part, ...] = ()
+
+    def __repr__(self) -> str:
+        """Return how much there is of what, in short."""
+        flat = sum(not plank.upright for plank in self.planks)
+        return f"Shell {self.mark}: {len(self.beams)} beams, {flat} flat planks, {len(self.joints)} joints"
 
 
 @dataclass(frozen=True)
@@ -361,6 +366,10 @@ class Gridshell:
     bolts: tuple[Bolt, ...] = ()
     joints: tuple[Joint, ...] = ()
     more: tuple[Part, ...] = ()
+
+    def __repr__(self) -> str:
+        """Return how much there is of what, in short."""
+        return f"Gridshell {self.name}: {len(self.shells)} shells, {len(all_parts(self))} parts"
 
 
 FlatBar: TypeAlias = Plank | Mullion | ClampingBar | Strap

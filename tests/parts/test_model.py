@@ -9,7 +9,19 @@ import pytest
 
 from aag_cad.design import Design
 from aag_cad.geometry.framed import frames_at
-from aag_cad.parts.model import FlatBar, Frame, Gridshell, Part, Plank, Shell, all_parts, ridge_parts, shell_parts
+from aag_cad.network.model import CurveNetwork
+from aag_cad.parts.model import (
+    FlatBar,
+    Frame,
+    Gridshell,
+    Part,
+    Plank,
+    Shell,
+    all_joints,
+    all_parts,
+    ridge_parts,
+    shell_parts,
+)
 from aag_cad.parts.products import part_frame
 from aag_cad.units import Floats
 
@@ -211,3 +223,17 @@ def test_the_parts_of_a_shell_by_kind(shell: Shell) -> None:
 def test_the_parts_between_the_shells(gridshell: Gridshell) -> None:
     """Seven blades of four bolts along each of three ridges."""
     assert Counter(type(part).__name__ for part in ridge_parts(gridshell)) == {"Blade": 21, "Bolt": 84}
+
+
+def test_what_python_shows_of_a_gridshell_its_parts_and_curves_is_short(
+    gridshell: Gridshell, network: CurveNetwork
+) -> None:
+    """Every mark can still be read; samples and holes stay out of it."""
+    first = gridshell.shells[0]
+    assert repr(gridshell) == f"Gridshell vault: 3 shells, {len(all_parts(gridshell))} parts"
+    assert repr(first) == "Shell S1: 22 beams, 17 flat planks, 436 joints"
+    assert repr(network) == f"CurveNetwork of {len(network.curves)} curves, {len(network.crossings)} crossings"
+    for item in (*all_parts(gridshell), *first.beams, *all_joints(gridshell)):
+        assert repr(item.mark) in repr(item)
+        assert len(repr(item)) < 300, repr(item)
+    assert max(len(repr(item.curve)) for item in (*first.planks, *network.curves)) < 60
