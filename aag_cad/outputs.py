@@ -125,11 +125,11 @@ def _plan_writer(name: str) -> Writer:
     """Return the writer of an output of the plan."""
 
     def write(dossier: Dossier, folder: Path) -> None:
-        from aag_cad.export.office.plan_files import PLAN_WRITERS, Planning
+        from aag_cad.export.office.plan_files import PLAN_WRITERS, PlanDossier
 
         model = dossier.model
-        planning = Planning(dossier.planned, model.gridshell, model.design.crew, dossier.language)
-        PLAN_WRITERS[name](planning, folder)
+        own = PlanDossier(dossier.planned, model.gridshell, model.design.crew, dossier.language)
+        PLAN_WRITERS[name](own, folder)
 
     return write
 

@@ -11,7 +11,7 @@ import networkx as nx
 from aag_cad.design import load_design
 from aag_cad.design_making import Crew
 from aag_cad.errors import DesignError, FileError
-from aag_cad.export.office.plan_files import PLAN_WRITERS, Planning, write_graph_groups, write_graph_plan
+from aag_cad.export.office.plan_files import PLAN_WRITERS, PlanDossier, write_graph_groups, write_graph_plan
 from aag_cad.files import publishing, read_text, sizes_below
 from aag_cad.findings import Finding, worst_first
 from aag_cad.language import Language, printed
@@ -109,14 +109,14 @@ def planned_source(source: Source, language: Language = "en", edges_first: bool 
     if source.gridshell is not None:
         gridshell = source.gridshell
         planned = planned_of(gridshell, crew, source.limits, edges_first=edges_first)
-        planning = Planning(planned, gridshell, crew, language)
+        dossier = PlanDossier(planned, gridshell, crew, language)
         return Result(
             planned.plan,
             planned.schedule,
             planned.locking,
             lambda: assembly_graph(gridshell),
             lambda: plan_file(planned.plan, planned.schedule, crew, gridshell_pieces(gridshell), planned.segmentation),
-            {name: _bound(writer, planning) for name, writer in PLAN_WRITERS.items()},
+            {name: _bound(writer, dossier) for name, writer in PLAN_WRITERS.items()},
         )
     assert source.graph is not None
     graph = source.graph
@@ -137,8 +137,8 @@ def planned_source(source: Source, language: Language = "en", edges_first: bool 
     )
 
 
-def _bound(writer: Callable[[Planning, Path], None], planning: Planning) -> Callable[[Path], None]:
-    return lambda folder: writer(planning, folder)
+def _bound(writer: Callable[[PlanDossier, Path], None], dossier: PlanDossier) -> Callable[[Path], None]:
+    return lambda folder: writer(dossier, folder)
 
 
 def write_plan(result: Result, folder: Path, report: Report = lambda stage: None) -> dict[str, int]:

@@ -28,7 +28,7 @@ _FEW = 4
 
 
 @dataclass(frozen=True)
-class _Task:
+class _Basis:
     """What the steps are made from; ``kits`` are all parts of each unit, planks first, then its blocks and bolts."""
 
     graph: "nx.MultiGraph[str]"
@@ -74,23 +74,23 @@ def _weights(
     return found | {mark: (masses[mark], float(graph.nodes[mark]["length_mm"])) for mark in single}
 
 
-def _laying(task: _Task, steps: dict[str, str]) -> Iterator[Work]:
+def _laying(basis: _Basis, steps: dict[str, str]) -> Iterator[Work]:
     """Yield the laying of runs in groups; ``steps`` learns the step of each unit."""
     counts: dict[str, int] = defaultdict(int)
-    for group in (group for run in task.order.runs for group in groups_of(run, LAID_A_STEP)):
-        first = task.units[group[0]]
+    for group in (group for run in basis.order.runs for group in groups_of(run, LAID_A_STEP)):
+        first = basis.units[group[0]]
         counts[first.shell] += 1
-        below = sorted({low for unit in group for low in task.woven.precedence.predecessors(unit)})
-        beneath = sorted({task.units[unit].family for unit in below})
+        below = sorted({low for unit in group for low in basis.woven.precedence.predecessors(unit)})
+        beneath = sorted({basis.units[unit].family for unit in below})
         stack = "-".join(part for part in (first.shell, first.family) if part)
         onto = named_marks(below) if "" in beneath else ", ".join(beneath)
-        marks = tuple(mark for unit in group for mark in task.kits[unit])
+        marks = tuple(mark for unit in group for mark in basis.kits[unit])
         title = _says("lay.title", marks=named_marks(group))
-        work = task.work(f"lay.{counts[first.shell]}", "lay", first.shell, title, marks)
+        work = basis.work(f"lay.{counts[first.shell]}", "lay", first.shell, title, marks)
         steps |= dict.fromkeys(group, work.id)
         yield replace(
             work,
-            assemblies=tuple(unit for unit in group if unit not in task.graph),
+            assemblies=tuple(unit for unit in group if unit not in basis.graph),
             after=tuple(dict.fromkeys(steps[unit] for unit in below if unit in steps)),
             notes=(
                 _says("lay.stack", stack=stack, marks=tuple(map(_short, group))),
@@ -111,24 +111,24 @@ def _passed(slide: Slide, overlaps: Iterable[Overlap]) -> tuple[Text, ...]:
     return tuple(texts)
 
 
-def _sliding(task: _Task, steps: dict[str, str]) -> Iterator[Work]:
+def _sliding(basis: _Basis, steps: dict[str, str]) -> Iterator[Work]:
     """Yield the slides, one step each."""
     counts: dict[str, int] = defaultdict(int)
     at_unit: dict[str, list[Overlap]] = defaultdict(list)
-    for overlap in task.woven.overlaps:
+    for overlap in basis.woven.overlaps:
         at_unit[overlap.lower].append(overlap)
         at_unit[overlap.upper].append(overlap)
-    for slide in task.order.slides:
-        unit = task.units[slide.unit]
+    for slide in basis.order.slides:
+        unit = basis.units[slide.unit]
         counts[unit.shell] += 1
         title = _says("slide.title", marks=named_marks((unit.mark,)))
-        work = task.work(f"slide.{counts[unit.shell]}", "slide", unit.shell, title, task.kits[unit.mark], PAIR)
-        before = sorted(task.woven.precedence.predecessors(unit.mark))
+        work = basis.work(f"slide.{counts[unit.shell]}", "slide", unit.shell, title, basis.kits[unit.mark], PAIR)
+        before = sorted(basis.woven.precedence.predecessors(unit.mark))
         free = _says("slide.free", free=slide.free) if isfinite(slide.free) else _says("slide.open")
         steps[unit.mark] = work.id
         yield replace(
             work,
-            assemblies=(unit.mark,) if unit.mark not in task.graph else (),
+            assemblies=(unit.mark,) if unit.mark not in basis.graph else (),
             after=tuple(dict.fromkeys(steps[other] for other in before if other in steps)),
             notes=(
                 _says("slide.place", end=_says(f"slide.{slide.end}"), needed=unit.length, free=free),
@@ -143,16 +143,16 @@ def _joined(group: Sequence[Joining]) -> Figure:
     return names if len(names) <= _FEW else _says("several", count=len(names), first=names[0], last=names[-1])
 
 
-def _joining(task: _Task, found: Sequence[Joining], steps: dict[str, str]) -> Iterator[Work]:
+def _joining(basis: _Basis, found: Sequence[Joining], steps: dict[str, str]) -> Iterator[Work]:
     """Yield the joining along the path; ``steps`` gives the step of each unit, and learns those of other parts.
 
     A step waits for all that its parts are tied to, and for the slides past these: they need the others loose.
     """
-    home = {mark: unit for unit, kit in task.kits.items() for mark in kit}
-    slid = {slide.unit for slide in task.order.slides}
+    home = {mark: unit for unit, kit in basis.kits.items() for mark in kit}
+    slid = {slide.unit for slide in basis.order.slides}
     past: dict[str, list[str]] = defaultdict(list)
     for unit in sorted(slid):
-        for other in task.woven.precedence.predecessors(unit):
+        for other in basis.woven.precedence.predecessors(unit):
             past[other].append(unit)
     runs: dict[tuple[str, str], list[Joining]] = defaultdict(list)
     for joining in found:
@@ -162,10 +162,10 @@ def _joining(task: _Task, found: Sequence[Joining], steps: dict[str, str]) -> It
         for group in groups_of(run, JOINTS_A_STEP):
             counts[shell] += 1
             marks = tuple(mark for joining in group for mark in joining.marks)
-            work = task.work(
+            work = basis.work(
                 f"join.{counts[shell]}", "join", shell, _says("join.title", joints=_joined(group)), marks, PAIR
             )
-            tied = sorted({other for mark in marks for other in task.graph[mark]} - set(marks))
+            tied = sorted({other for mark in marks for other in basis.graph[mark]} - set(marks))
             units = dict.fromkeys(home[other] for other in tied if other in home)
             waits = [*units, *(unit for other in units for unit in past[other]), *(o for o in tied if o not in home)]
             steps |= dict.fromkeys(marks, work.id)
@@ -194,11 +194,11 @@ def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float) -> P
     """
     lifters, woven, units = lifters_of(people, lift_limit), interlacing(graph, later=()), units_of(graph)
     order, kits = flat_order_of(graph, woven, later=()), _kits(graph, units)
-    task, weights = _Task(graph, units, kits, woven, order), _weights(graph, kits, units)
+    basis, weights = _Basis(graph, units, kits, woven, order), _weights(graph, kits, units)
     placed = {mark: unit for unit, kit in kits.items() for mark in kit}
     found, waiting = joinings(graph, units, placed, woven.left_out, woven.overlaps)
     step_of: dict[str, str] = {}
-    works = [*_laying(task, step_of), *_sliding(task, step_of), *_joining(task, found, step_of)]
+    works = [*_laying(basis, step_of), *_sliding(basis, step_of), *_joining(basis, found, step_of)]
     lifted = {mark: weight for mark, weight in weights.items() if mark not in woven.left_out}
     findings = (*woven.findings, *_waiting(waiting), *lifting_findings(lifted, lifters))
     return Plan(str(graph.name), tuple(steps_from(works, weights, lifters)), findings)

@@ -26,7 +26,7 @@ _LAYING: dict[str, Phase] = {"A1": "lay A1", "G": "lay G", "A2": "lay A2"}
 
 
 @dataclass(frozen=True)
-class _Task:
+class _Basis:
     """What the works of one shell are made from."""
 
     shell: Shell
@@ -40,40 +40,40 @@ class _Task:
         return Work(f"{mark}.{name}", phase, title, card(phase, self.fasteners, told=told, below=below), mark)
 
 
-def _prefabrication(task: _Task) -> Iterator[Work]:
+def _prefabrication(basis: _Basis) -> Iterator[Work]:
     """Yield the making of beams in the order of laying; no group waits for another."""
-    beams = task.kit.beams
-    runs = ([unit for unit in run if unit in beams] for run in task.order.runs)
+    beams = basis.kit.beams
+    runs = ([unit for unit in run if unit in beams] for run in basis.order.runs)
     groups = chain.from_iterable(groups_of(run, BEAMS_A_STEP) for run in runs)
     for i, group in enumerate(groups, start=1):
-        work = task.work(f"make.{i}", "prefabricate", text("steps.make.title", marks=joined_ranges(group)))
+        work = basis.work(f"make.{i}", "prefabricate", text("steps.make.title", marks=joined_ranges(group)))
         yield replace(work, marks=all_of(beams[beam] for beam in group), least_crew=PAIR)
 
 
-def _laying(task: _Task, made: Mapping[str, str]) -> Iterator[Work]:
+def _laying(basis: _Basis, made: Mapping[str, str]) -> Iterator[Work]:
     """Yield the flat layout; each step follows the one before and the making of its beams (``made``: beam -> id)."""
-    laid = index_of(task.shell).units
-    runs = (tuple(units) for run in task.order.runs for _, units in groupby(run, key=lambda unit: laid[unit].family))
+    laid = index_of(basis.shell).units
+    runs = (tuple(units) for run in basis.order.runs for _, units in groupby(run, key=lambda unit: laid[unit].family))
     groups = chain.from_iterable(groups_of(run, LAID_A_STEP) for run in runs)
     before: tuple[str, ...] = ()
     for i, group in enumerate(groups, start=1):
         family = laid[group[0]].family
-        beams = tuple(unit for unit in group if unit in task.kit.beams)
+        beams = tuple(unit for unit in group if unit in basis.kit.beams)
         title = text("steps.lay.beams" if beams else "steps.lay.geodesics", marks=joined_ranges(group))
-        work = task.work(f"lay.{i}", _LAYING[family], title, below=text(f"steps.below.{family}"))
+        work = basis.work(f"lay.{i}", _LAYING[family], title, below=text(f"steps.below.{family}"))
         yield replace(
             work,
             after=(*dict.fromkeys(made[beam] for beam in beams), *before),
-            marks=tuple(unit for unit in group if unit not in task.kit.beams),
+            marks=tuple(unit for unit in group if unit not in basis.kit.beams),
             assemblies=beams,
         )
         before = (work.id,)
 
 
-def _sliding(task: _Task, laid: str) -> Iterator[Work]:
+def _sliding(basis: _Basis, laid: str) -> Iterator[Work]:
     """Yield the sliding in of planks that are woven between others, one after the other."""
-    lengths = {plank.mark: plank.blank.length for plank in task.shell.planks}
-    for i, slide in enumerate(task.order.slides, start=1):
+    lengths = {plank.mark: plank.blank.length for plank in basis.shell.planks}
+    for i, slide in enumerate(basis.order.slides, start=1):
         way = text(
             "steps.slide.way",
             unit=short_mark(slide.unit),
@@ -83,19 +83,19 @@ def _sliding(task: _Task, laid: str) -> Iterator[Work]:
             needed=lengths[slide.unit],
             free=text("steps.slide.open") if slide.free == float("inf") else f"{slide.free:.0f} mm",
         )
-        work = task.work(f"slide.{i}", "slide", text("steps.slide.title", marks=joined_ranges((slide.unit,))))
+        work = basis.work(f"slide.{i}", "slide", text("steps.slide.title", marks=joined_ranges((slide.unit,))))
         yield replace(work, after=(laid,), marks=(slide.unit,), least_crew=PAIR, notes=(way,))
         laid = work.id
 
 
-def _setting(task: _Task, laid: str) -> Iterator[Work]:
+def _setting(basis: _Basis, laid: str) -> Iterator[Work]:
     """Yield the setting of studs, row by row from the foot, with their bolts."""
     first, before = 1, laid
-    for i, rows in enumerate(row_groups(task.order.rows, STUDS_A_STEP), start=1):
+    for i, rows in enumerate(row_groups(basis.order.rows, STUDS_A_STEP), start=1):
         last, studs = first + len(rows) - 1, all_of(rows)
         key = "steps.stud.row" if last == first else "steps.stud.rows"
-        work = task.work(f"stud.{i}", "studs", text(key, marks=joined_ranges(studs), first=first, last=last))
-        marks = all_of((stud, *task.kit.studs[stud]) for stud in studs)
+        work = basis.work(f"stud.{i}", "studs", text(key, marks=joined_ranges(studs), first=first, last=last))
+        marks = all_of((stud, *basis.kit.studs[stud]) for stud in studs)
         yield replace(work, after=(before,), marks=marks, least_crew=PAIR)
         first, before = last + 1, work.id
 
@@ -125,25 +125,25 @@ def _props_after(locking: LockingOrder, state: LockingStep) -> tuple[StepProp, .
     return props_under((*locking.hoists, *(prop.joint for prop in state.props)), locking.shell)
 
 
-def _edging(task: _Task, edges: tuple[str, ...], before: str, locking: LockingOrder | None) -> Work:
+def _edging(basis: _Basis, edges: tuple[str, ...], before: str, locking: LockingOrder | None) -> Work:
     """Return the pushing in of the lower or the upper edge planks, with their screws."""
-    name = "lower" if edges[0] in task.kit.lower_edges else "upper"
+    name = "lower" if edges[0] in basis.kit.lower_edges else "upper"
     title = text(f"steps.edge.{name}" if len(edges) == 1 else f"steps.edge.{name}s", marks=joined_ranges(edges))
-    marks = all_of((mark, *task.kit.edges[mark]) for mark in edges)
-    told = "" if index_of(task.shell).straps.keys() & set(marks) else "edge planks alone"
-    work = task.work(f"edge.{name}", "edge planks", title, told=told)
+    marks = all_of((mark, *basis.kit.edges[mark]) for mark in edges)
+    told = "" if index_of(basis.shell).straps.keys() & set(marks) else "edge planks alone"
+    work = basis.work(f"edge.{name}", "edge planks", title, told=told)
     props = _props_before(locking, edges)
     return replace(work, after=(before,), marks=marks, least_crew=2 * PAIR, props=props)
 
 
 def _fixing(
-    task: _Task, number: int, groups: Sequence[tuple[str, ...]], before: str, locking: LockingOrder | None
+    basis: _Basis, number: int, groups: Sequence[tuple[str, ...]], before: str, locking: LockingOrder | None
 ) -> Work:
     """Return the driving of the screws of some groups of geodesics."""
-    kit, every = task.kit, all_of(groups)
+    kit, every = basis.kit, all_of(groups)
     turns = tuple(joined_ranges(group) for group in groups)
     return replace(
-        task.work(f"fix.{number}", "fix geodesics", text("steps.fix.title", marks=joined_ranges(every))),
+        basis.work(f"fix.{number}", "fix geodesics", text("steps.fix.title", marks=joined_ranges(every))),
         after=(before,),
         marks=all_of(screws[mark] for screws in (kit.outside, kit.inside) for mark in every),
         least_crew=PAIR,
@@ -152,20 +152,20 @@ def _fixing(
     )
 
 
-def _locking(task: _Task, before: str, locking: LockingOrder | None) -> Iterator[Work]:
+def _locking(basis: _Basis, before: str, locking: LockingOrder | None) -> Iterator[Work]:
     """Yield what stiffens the hoisted shell: edge planks and geodesics in the locking order, then all bolts."""
     number = 0
-    for edges, listed in groupby(_locking_groups(task.kit, locking), key=lambda group: group[0] in task.kit.edges):
+    for edges, listed in groupby(_locking_groups(basis.kit, locking), key=lambda group: group[0] in basis.kit.edges):
         groups = list(listed)
         size = 1 if edges else PAIRS_A_STEP
         for some in (groups[i : i + size] for i in range(0, len(groups), size)):
             number += not edges
-            work = _edging(task, some[0], before, locking) if edges else _fixing(task, number, some, before, locking)
+            work = _edging(basis, some[0], before, locking) if edges else _fixing(basis, number, some, before, locking)
             yield work
             before = work.id
-    name, props = task.shell.mark, props_under(locking.hoists, locking.shell) if locking else ()
-    told = "" if task.fasteners.get("ridge") else "tighten alone"
-    work = task.work("tighten", "tighten", text("steps.tighten.title", shell=name), told=told)
+    name, props = basis.shell.mark, props_under(locking.hoists, locking.shell) if locking else ()
+    told = "" if basis.fasteners.get("ridge") else "tighten alone"
+    work = basis.work("tighten", "tighten", text("steps.tighten.title", shell=name), told=told)
     yield replace(work, after=(before,), least_crew=PAIR, props=props)
 
 
@@ -178,14 +178,14 @@ def shell_works(
     that it proposes; without one, edge planks first, then the geodesics in the order of their marks. PlanError if a
     part belongs to no joint.
     """
-    task, name = _Task(shell, shell_kit(shell), order, fasteners_by_kind(gridshell, (shell,))), shell.mark
-    making = list(_prefabrication(task))
-    made = {beam: work.id for beam, marks in task.kit.beams.items() for work in making if marks[0] in work.marks}
-    laying = list(_laying(task, made))
-    sliding = list(_sliding(task, laying[-1].id))
-    setting = list(_setting(task, (*laying, *sliding)[-1].id))
+    basis, name = _Basis(shell, shell_kit(shell), order, fasteners_by_kind(gridshell, (shell,))), shell.mark
+    making = list(_prefabrication(basis))
+    made = {beam: work.id for beam, marks in basis.kit.beams.items() for work in making if marks[0] in work.marks}
+    laying = list(_laying(basis, made))
+    sliding = list(_sliding(basis, laying[-1].id))
+    setting = list(_setting(basis, (*laying, *sliding)[-1].id))
     flat = (*making, *laying, *sliding, *setting)
     props = _props_after(locking, locking.steps[0]) if locking else ()
-    hoist = task.work("hoist", "hoist", text("steps.hoist.title", shell=name))
+    hoist = basis.work("hoist", "hoist", text("steps.hoist.title", shell=name))
     hoist = replace(hoist, after=(flat[-1].id,), assemblies=(name,), least_crew=EVERYONE, props=props)
-    return (*flat, hoist, *_locking(task, hoist.id, locking))
+    return (*flat, hoist, *_locking(basis, hoist.id, locking))

@@ -34,7 +34,7 @@ GROUPS_HEADER = ("segment", "parts", "mass_kg", "marks")
 
 
 @dataclass(frozen=True)
-class Planning:
+class PlanDossier:
     """What the files of a plan are written from."""
 
     planned: Planned
@@ -51,51 +51,51 @@ def write_schedule(plan: Plan, schedule: Schedule, title: str, crew: Crew, folde
         write_calendar(plan, schedule, clock, folder / "schedule.ics", language)
 
 
-def _laying_table(planning: Planning) -> str:
+def _laying_table(dossier: PlanDossier) -> str:
     """Return where every member and stud lies on the floor, shell by shell, for setting out with tapes."""
-    flat, language = planning.planned.flat, planning.language
-    shells = [shell for shell in planning.gridshell.shells if shell.mark in flat]
+    flat, language = dossier.planned.flat, dossier.language
+    shells = [shell for shell in dossier.gridshell.shells if shell.mark in flat]
     rows = ((shell.mark, *row) for shell in shells for row in laying_rows(shell, flat[shell.mark], language))
     return csv_text(LAYING_HEADER, rows)
 
 
-def _write_plan(planning: Planning, folder: Path) -> None:
-    planned, gridshell, crew = planning.planned, planning.gridshell, planning.crew
+def _write_plan(dossier: PlanDossier, folder: Path) -> None:
+    planned, gridshell, crew = dossier.planned, dossier.gridshell, dossier.crew
     pieces = gridshell_pieces(gridshell)
     up = plan_file(planned.plan, planned.schedule, crew, pieces, planned.segmentation)
     write_text(folder / "plan.json", plan_json(up))
     down = plan_file(planned.down, planned.down_schedule, crew, pieces, planned.segmentation)
     write_text(folder / "disassembly.json", plan_json(down))
-    write_text(folder / "tables" / "laying.csv", _laying_table(planning))
+    write_text(folder / "tables" / "laying.csv", _laying_table(dossier))
 
 
-def _write_schedule(planning: Planning, folder: Path) -> None:
-    planned = planning.planned
-    write_schedule(planned.plan, planned.schedule, planning.gridshell.title, planning.crew, folder, planning.language)
+def _write_schedule(dossier: PlanDossier, folder: Path) -> None:
+    planned = dossier.planned
+    write_schedule(planned.plan, planned.schedule, dossier.gridshell.title, dossier.crew, folder, dossier.language)
 
 
-def _write_locking(planning: Planning, folder: Path) -> None:
-    orders = planning.planned.locking
+def _write_locking(dossier: PlanDossier, folder: Path) -> None:
+    orders = dossier.planned.locking
     write_locking_table(orders, folder / "tables" / "locking.csv")
-    write_text(folder / "locking.svg", locking_svg(orders[0], planning.language))
+    write_text(folder / "locking.svg", locking_svg(orders[0], dossier.language))
 
 
-def _write_segments(planning: Planning, folder: Path) -> None:
+def _write_segments(dossier: PlanDossier, folder: Path) -> None:
     tables = folder / "tables"
-    write_segment_tables(planning.planned.segmentation, tables / "segments.csv", tables / "splices.csv")
+    write_segment_tables(dossier.planned.segmentation, tables / "segments.csv", tables / "splices.csv")
 
 
-def _write_sequence(planning: Planning, folder: Path) -> None:
-    write_booklets(planning.planned, planning.gridshell, folder, planning.language)
+def _write_sequence(dossier: PlanDossier, folder: Path) -> None:
+    write_booklets(dossier.planned, dossier.gridshell, folder, dossier.language)
 
 
-def _write_graph(planning: Planning, folder: Path) -> None:
-    graph = assembly_graph(planning.gridshell)
+def _write_graph(dossier: PlanDossier, folder: Path) -> None:
+    graph = assembly_graph(dossier.gridshell)
     write_text(folder / "graph.json", graph_json(graph))
     write_text(folder / "graph.graphml", graphml(graph))
 
 
-PlanWriter: TypeAlias = Callable[[Planning, Path], None]
+PlanWriter: TypeAlias = Callable[[PlanDossier, Path], None]
 PLAN_WRITERS: dict[str, PlanWriter] = {
     "plan": _write_plan,
     "schedule": _write_schedule,
