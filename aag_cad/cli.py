@@ -94,6 +94,14 @@ def _findings_table(findings: list[dict[str, Any]]) -> Table:
     return table
 
 
+def _exit_on_errors(findings: list[dict[str, Any]], where: str) -> None:
+    """End with exit code 1 if there is a finding of severity error."""
+    errors = sum(finding["severity"] == "error" for finding in findings)
+    if errors:
+        print(f"aag: {errors} error{'s' if errors > 1 else ''} in {where}", file=sys.stderr)
+        raise typer.Exit(1)
+
+
 def _files_table(files: dict[str, int], folder: Path, summary: bool = True) -> Table:
     table = Table(title=f"Files in {folder}", title_justify="left")
     table.add_column("file")
@@ -161,24 +169,29 @@ def build(
         summary = run(read, folder, wanted, report, curves_from(curves) if curves else None, options, lang).summary
     if as_json:
         print(json.dumps(summary, indent=1, ensure_ascii=False))
-        return
-    console = Console()
-    console.print(_key_figures(summary), highlight=False)
-    console.print(_findings_table(summary["findings"]))
-    console.print(_files_table(summary["files"], folder))
-    for name, remedy in left_out().items() if not wanted else ():
-        console.print(f"Left out: {name}; for it {remedy}", highlight=False)
+    else:
+        console = Console()
+        console.print(_key_figures(summary), highlight=False)
+        console.print(_findings_table(summary["findings"]))
+        console.print(_files_table(summary["files"], folder))
+        for name, remedy in left_out().items() if not wanted else ():
+            console.print(f"Left out: {name}; for it {remedy}", highlight=False)
+    _exit_on_errors(summary["findings"], design)
 
 
 @app.command()
 @_user_errors
-def check(design: DesignName, as_json: AsJson = False) -> None:
+def check(
+    design: DesignName,
+    as_json: AsJson = False,
+    plan: Annotated[str, typer.Option(metavar="FILE", help="a plan.json or disassembly.json to walk through too")] = "",
+) -> None:
     """Audit a design without writing files; exit code 1 if there is a finding of severity error."""
     from aag_cad.design import load_design
 
     read = load_design(design)
     from aag_cad.audit import audit
-    from aag_cad.findings import finding_row
+    from aag_cad.findings import finding_row, worst_first
     from aag_cad.pipeline import gridshell_of
     from aag_cad.shop.purchases import purchases_of
 
@@ -188,16 +201,19 @@ def check(design: DesignName, as_json: AsJson = False) -> None:
         report("stock")
         purchases = purchases_of(gridshell, read)
         report("audit")
-        findings = [finding_row(finding) for finding in audit(read, gridshell, purchases)]
+        found = [*audit(read, gridshell, purchases)]
+        if plan:
+            from aag_cad.planning import file_faults
+            from assembly.plan.planned import limits_of
+
+            found += file_faults(plan, gridshell, read.crew, limits_of(read.transport))
+        findings = [finding_row(finding) for finding in worst_first(found)]
     if as_json:
         print(json.dumps(findings, indent=1, ensure_ascii=False))
     else:
         console = Console()
         console.print(_findings_table(findings))
-    errors = sum(finding["severity"] == "error" for finding in findings)
-    if errors:
-        print(f"aag: {errors} errors in {design}", file=sys.stderr)
-        raise typer.Exit(1)
+    _exit_on_errors(findings, design)
 
 
 @app.command()
@@ -240,6 +256,7 @@ def plan(
     if explain:
         print("\n".join(explained(result, explain, printed)))
         return
+    findings = [finding_row(finding, printed) for finding in result.findings]
     if as_json:
         print(plan_json(result.file()), end="")
     else:
@@ -249,12 +266,9 @@ def plan(
         for order in result.locking[:1] if edges_first else ():
             price = f"{100.0 * order.rule_price:.0f} %"
             console.print(f"Edge planks before geodesics cost {price} of the stiffness on the way", highlight=False)
-        console.print(_findings_table([finding_row(f, printed) for f in result.findings]))
+        console.print(_findings_table(findings))
         console.print(_files_table(files, folder, summary=False))
-    errors = sum(finding.severity == "error" for finding in result.findings)
-    if errors:
-        print(f"aag: {errors} errors in the plan of {source}", file=sys.stderr)
-        raise typer.Exit(1)
+    _exit_on_errors(findings, f"the plan of {source}")
 
 
 def _goals_for_mesh(node_angle: float | None, bottom_row: int | None, height: float | None, symmetric: bool) -> Any:

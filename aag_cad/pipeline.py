@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from aag_cad.audit import audit
 from aag_cad.design import Design
+from aag_cad.design_making import Crew
 from aag_cad.design_tables import (
     ArcSurface,
     CatenoidSurface,
@@ -45,6 +46,7 @@ from aag_cad.web.start import StartWeb, start_web, web_chart
 from aag_cad.web.web import Web, crpc_web, sampled_web
 
 if TYPE_CHECKING:
+    from assembly.base.segments import Limits
     from assembly.plan.planned import Planned
 
 Report = Callable[[str], None]
@@ -172,6 +174,24 @@ def gridshell_of(design: Design) -> Gridshell:
     return model_of(design).gridshell
 
 
+def checked_plans(gridshell: Gridshell, crew: Crew, limits: "Limits", edges_first: bool = True) -> "Planned":
+    """Return all plans for a gridshell, with what independent walks find wrong with them among their findings.
+
+    PlanError and FrameError as ``planned_of``.
+    """
+    from assembly.checks.findings import disassembly_faults, plan_faults
+    from assembly.plan.planned import planned_of
+
+    planned = planned_of(gridshell, crew, limits, edges_first=edges_first)
+    up = plan_faults(planned.plan, gridshell, planned.segmentation, planned.locking)
+    down = disassembly_faults(planned.down, gridshell)
+    return replace(
+        planned,
+        plan=replace(planned.plan, findings=(*planned.plan.findings, *up)),
+        down=replace(planned.down, findings=(*planned.down.findings, *down)),
+    )
+
+
 MODEL_STAGES = ("web", "curves", "parts", "stock", "audit", "assembly")
 
 
@@ -192,7 +212,7 @@ def build(
     """
     from aag_cad.export.office.summary import summary_of, write_summary
     from aag_cad.language import language_of
-    from assembly.plan.planned import limits_of, planned_of
+    from assembly.plan.planned import limits_of
 
     outputs, ifc_options = chosen_outputs(only), ifc or IfcOptions()
     require_known(ifc_options)
@@ -210,8 +230,8 @@ def build(
         begin("audit")
         checked = audit(design, model.gridshell, purchases)
         begin("assembly")
-        planned = planned_of(model.gridshell, design.crew, limits_of(design.transport))
-        findings = worst_first([*checked, *planned.plan.findings])
+        planned = checked_plans(model.gridshell, design.crew, limits_of(design.transport))
+        findings = worst_first([*checked, *planned.findings])
         dossier = Dossier(model, planned, purchases, ifc_options, printed)
         for output in outputs:
             begin(output)

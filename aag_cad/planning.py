@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +17,13 @@ from aag_cad.findings import Finding, worst_first
 from aag_cad.language import Language, printed
 from aag_cad.parts.model import Gridshell
 from aag_cad.parts.store import read_gridshell
-from aag_cad.pipeline import Report, gridshell_of
+from aag_cad.pipeline import Report, checked_plans, gridshell_of
 from assembly.base.locking_order import LockingOrder
+from assembly.base.phases import is_down
 from assembly.base.segments import Limits
 from assembly.base.steps import Plan
-from assembly.booklet.plan_file import PlanFile, graph_pieces, gridshell_pieces, plan_file
+from assembly.booklet.plan_file import PlanFile, graph_pieces, gridshell_pieces, plan_file, read_plan
+from assembly.checks.findings import disassembly_faults, graph_plan_faults, plan_faults
 from assembly.graph.files import graph_text, read_graph, shipped_graphs
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.plan.explain import explanation
@@ -51,6 +53,7 @@ class Result:
 
     plan: Plan
     schedule: Schedule
+    found: tuple[Finding, ...]
     locking: tuple[LockingOrder, ...]
     graph: Callable[[], "nx.MultiGraph[str]"]
     file: Callable[[], PlanFile]
@@ -59,7 +62,7 @@ class Result:
     @property
     def findings(self) -> tuple[Finding, ...]:
         """What cannot be done so, the worst first."""
-        return worst_first(self.plan.findings)
+        return worst_first(self.found)
 
 
 def _keys(text: str, path: str) -> set[str]:
@@ -108,11 +111,12 @@ def planned_source(source: Source, language: Language = "en", edges_first: bool 
     crew = source.crew
     if source.gridshell is not None:
         gridshell = source.gridshell
-        planned = planned_of(gridshell, crew, source.limits, edges_first=edges_first)
+        planned = checked_plans(gridshell, crew, source.limits, edges_first)
         dossier = PlanDossier(planned, gridshell, crew, language)
         return Result(
             planned.plan,
             planned.schedule,
+            planned.findings,
             planned.locking,
             lambda: assembly_graph(gridshell),
             lambda: plan_file(planned.plan, planned.schedule, crew, gridshell_pieces(gridshell), planned.segmentation),
@@ -121,6 +125,7 @@ def planned_source(source: Source, language: Language = "en", edges_first: bool 
     assert source.graph is not None
     graph = source.graph
     plan = graph_plan(graph, crew.people, crew.lift_limit)
+    plan = replace(plan, findings=(*plan.findings, *graph_plan_faults(plan, graph, crew.people)))
     schedule = schedule_of(plan, graph_durations(plan, graph, crew.minutes), crew.people, crew.hours_per_day)
     writers: dict[str, Callable[[Path], None]] = {
         "files": lambda folder: write_graph_plan(graph, plan, schedule, crew, folder, language)
@@ -130,11 +135,25 @@ def planned_source(source: Source, language: Language = "en", edges_first: bool 
     return Result(
         plan,
         schedule,
+        plan.findings,
         (),
         lambda: graph,
         lambda: plan_file(plan, schedule, crew, graph_pieces(graph)),
         writers,
     )
+
+
+def file_faults(path: str, gridshell: Gridshell, crew: Crew, limits: Limits) -> tuple[Finding, ...]:
+    """Return what independent walks find wrong with the plan in a file, of putting a gridshell together or down.
+
+    ``limits`` are those of the transport that it is cut for. FileError if the file cannot be read, PlanError if it is
+    no plan.
+    """
+    plan = read_plan(read_text(path)).plan
+    if any(is_down(step.phase) for step in plan.steps):
+        return disassembly_faults(plan, gridshell)
+    planned = planned_of(gridshell, crew, limits)
+    return plan_faults(plan, gridshell, planned.segmentation, planned.locking)
 
 
 def _bound(writer: Callable[[PlanDossier, Path], None], dossier: PlanDossier) -> Callable[[Path], None]:

@@ -141,7 +141,8 @@ class Segment:
     ``parts`` are the marks of whole parts, ``pieces`` what it has of cut planks. ``mass`` in kg, without bracing;
     ``timber`` of it is timber; ``centre`` of gravity and the axes of ``pose`` are in vault coordinates, mm. ``over`` is
     what length, width, height (mm) and mass (kg) exceed the transport by, negative where there is room. ``props`` are
-    the studs under which a segment of a cut shell is propped wherever it stands alone on its feet.
+    the joints under which a segment of a cut shell is propped wherever it stands alone on its feet, and
+    ``standing_margin`` how far its plumb line then runs inside feet and props, mm, negative outside.
     """
 
     name: str
@@ -157,6 +158,7 @@ class Segment:
     lifting: Lifting
     braces: tuple[Brace, ...]
     props: tuple[str, ...]
+    standing_margin: float = math.inf
 
     @property
     def fits(self) -> bool:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from aag_cad.design_making import Crew, Transport
+from aag_cad.findings import Finding
 from aag_cad.parts.model import Gridshell
 from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Limits, Segmentation
@@ -33,6 +34,11 @@ class Planned:
     segmentation: Segmentation
     down: Plan
     down_schedule: Schedule
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What cannot be put together or taken down so, or not by this crew."""
+        return (*self.plan.findings, *self.down.findings)
 
 
 NO_LIMITS = Limits(*(4 * (float("inf"),)))

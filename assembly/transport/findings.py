@@ -6,13 +6,20 @@ from collections.abc import Sequence
 from aag_cad.findings import Finding, Severity
 from aag_cad.language import Figure, Text, text
 from aag_cad.parts.marks import short_mark
-from assembly.base.segments import Lifting, Limits, Pose, Splice
-from assembly.transport.cut_pieces import Divisible, Stretch, stop_splices, stretch_between
+from assembly.base.segments import Lifting, Limits, Pose, Segment, Splice
+from assembly.transport.cut_pieces import (
+    Divisible,
+    Stretch,
+    stop_splices,
+    stretch_between,
+)
 from assembly.transport.lifting import LEAST_MARGIN
 from assembly.transport.search import least_widths, pose_in, segment_ends, smallest_runs
 
 _ROUNDING = 1e-9
 _UP_TO = 10.0
+# Without three feet or props there is no plumb line inside them.
+_FAR = 1e4
 _AXES = ("length", "width", "height", "mass")
 
 
@@ -123,3 +130,12 @@ def splice_finding(splice: Splice) -> Finding | None:
     what = _words(f"next_{kind}", joint=joint, line=short_mark(splice.line))
     remedy = _words("edge_remedy" if splice.kind == "plate" else "beam_remedy")
     return Finding("AAG964", "error", splice.member, what, found, allowed, "mm", remedy)
+
+
+def standing_finding(segment: Segment) -> Finding | None:
+    """Return that a segment of a cut shell tips on its feet and props (AAG966, an error), None if these hold it."""
+    if segment.standing_margin > 0.0:
+        return None
+    found = max(segment.standing_margin, -_FAR)
+    what, remedy = _words("tips"), _words("tips_remedy", x=segment.centre[0], y=segment.centre[1])
+    return Finding("AAG966", "error", segment.name, what, found, 0.0, "mm", remedy)

@@ -68,21 +68,47 @@ def margin_inside(plan: Floats, point: Floats) -> float:
     return float(-(sides[:, :2] @ point + sides[:, 2]).max())
 
 
-def standing_props(feet: Sequence[Floats], studs: Mapping[str, Floats], centre: Floats) -> tuple[str, ...]:
-    """Return the two studs under which props hold best what stands on its feet, of the sixteen highest.
+def standing_margin(feet: Sequence[Floats], props: Sequence[Floats], centre: Floats) -> float:
+    """Return how far the plumb line of a centre (3,) runs inside feet and props (3,), in plan, mm; negative outside."""
+    return margin_inside(np.array([point[:2] for point in (*feet, *props)]).reshape(-1, 2), centre[:2])
 
-    The plumb line of the centre of gravity (3,) runs inside feet and props with most margin in plan; of like pairs the
-    higher one. Points (3,) with z up; none without feet or two studs.
+
+def standing_props(
+    feet: Sequence[Floats], studs: Mapping[str, Floats], blocks: Mapping[str, Floats], centre: Floats
+) -> tuple[str, ...]:
+    """Return the joints under which props hold what stands on its feet: two studs if any two of them do.
+
+    The plumb line of the centre of gravity (3,) runs inside feet and props with most margin in plan, of the sixteen
+    highest studs; of like pairs the higher one. Where no two studs hold it, two of all studs and blocks, then three.
+    Points (3,) with z up; none without feet or two studs.
     """
     highest = sorted(studs, key=lambda mark: (-round(float(studs[mark][2]), 3), mark))[:_PROPPED]
     if not feet or len(highest) < 2:
         return ()
+    points = dict(studs) | dict(blocks)
 
-    def worth(pair: tuple[str, ...]) -> tuple[float, float]:
-        plan = np.array([*(foot[:2] for foot in feet), *(studs[mark][:2] for mark in pair)])
-        return round(margin_inside(plan, centre[:2])), round(sum(float(studs[mark][2]) for mark in pair), 3)
+    def margin(marks: tuple[str, ...]) -> int:
+        return round(standing_margin(feet, [points[mark] for mark in marks], centre))
 
-    return max(combinations(highest, 2), key=worth)
+    def worth(marks: tuple[str, ...]) -> tuple[float, float]:
+        return margin(marks), round(sum(float(points[mark][2]) for mark in marks), 3)
+
+    best: tuple[str, ...] = max(combinations(highest, 2), key=worth)
+    for count in (2, 3):
+        if margin(best) <= 0:
+            best = max(combinations(_outer(points), count), key=worth, default=best)
+    return best
+
+
+def _outer(points: Mapping[str, Floats]) -> list[str]:
+    """Return the joints at the corners of the convex hull of all, in plan: no others hold a plumb line better."""
+    marks = sorted(points)
+    plan = np.array([points[mark][:2] for mark in marks])
+    try:
+        corners = np.sort(ConvexHull(plan).vertices)
+    except QhullError:
+        return marks
+    return [marks[int(i)] for i in corners]
 
 
 def _between(kind: Literal["bar", "tie", "diagonal"], start: str, end: str, studs: Mapping[str, Floats]) -> Brace:

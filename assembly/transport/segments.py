@@ -1,5 +1,6 @@
 """The segments in which a gridshell travels: its shells, cut along geodesics if they must be (paper section 3.2)."""
 
+import math
 from collections.abc import Iterable, Mapping
 
 import numpy as np
@@ -14,8 +15,15 @@ from aag_cad.parts.products import product_key
 from aag_cad.units import Floats, vector
 from assembly.base.segments import Limits, Pose, Segment, Segmentation, Splice
 from assembly.transport.cut_pieces import Divisible, Stretch, cut_stops, divisible, stop_splices, stretch_between
-from assembly.transport.findings import cut_finding, hopeless_finding, lifting_finding, splice_finding, wish
-from assembly.transport.lifting import STIFF_GEODESICS, braces, lifting_points, standing_props
+from assembly.transport.findings import (
+    cut_finding,
+    hopeless_finding,
+    lifting_finding,
+    splice_finding,
+    standing_finding,
+    wish,
+)
+from assembly.transport.lifting import STIFF_GEODESICS, braces, lifting_points, standing_margin, standing_props
 from assembly.transport.search import best_stops, pose_in, segment_ends
 
 
@@ -96,7 +104,9 @@ def _segment(
     lifting = lifting_points(studs, centre)
     if not lifting.studs:
         lifting = lifting_points(studs | blocks, centre)
-    props = standing_props(_feet(item, stretch, matrix), studs, centre) or lifting.studs
+    feet = _feet(item, stretch, matrix)
+    props = (standing_props(feet, studs, blocks, centre) or lifting.studs) if cuts else ()
+    propped = [(studs | blocks)[mark] for mark in props]
     columns = _columns(item, start, end, studs)
     few = len(stretch.geodesics) < STIFF_GEODESICS
     ends = _outermost(item, start, end, columns, blocks) if few else ([], [])
@@ -115,7 +125,8 @@ def _segment(
         _over(pose, stretch, limits),
         lifting,
         braces(studs | blocks, columns, sides, ends),
-        props if cuts else (),
+        props,
+        standing_margin(feet, propped, centre) if cuts else math.inf,
     )
 
 
@@ -171,11 +182,12 @@ def segments(gridshell: Gridshell, limits: Limits) -> Segmentation:
         found = (
             *(splice_finding(s) for s in cut),
             *(lifting_finding(s.name, s.lifting) for s in own),
+            *(standing_finding(s) for s in own),
         )
         problems += [finding for finding in found if finding is not None]
     return Segmentation(limits, tuple(made), tuple(splices), tuple(site), tuple(changes), tuple(problems))
 
 
 def segment_findings(segmentation: Segmentation) -> tuple[Finding, ...]:
-    """Return what is found about segments: AAG961 shells that must be cut, AAG962 to AAG964 what must change."""
+    """Return what is found about segments: AAG961 shells that must be cut; what must change, AAG962 to 964 and 966."""
     return (*segmentation.changes, *segmentation.problems)

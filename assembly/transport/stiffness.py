@@ -233,7 +233,7 @@ def finished_lowest(shell: Shell, timber: Timber) -> dict[Way, float]:
     centre = np.asarray(np.average(points, axis=0, weights=frame.masses))
     studs = {stud.mark: np.array(stud.frame.origin) for stud in shell.studs if stud.mark in frame.beam_nodes}
     feet = _feet(shell, (plank.mark for plank in shell.planks))
-    lifting, props = lifting_points(studs, centre).studs, standing_props([np.array(f) for f in feet], studs, centre)
+    lifting, props = lifting_points(studs, centre).studs, standing_props([np.array(f) for f in feet], studs, {}, centre)
     found: dict[Way, float] = {}
     if lifting:
         found["hung"] = _state(_hung(braced, lifting), (), "hung", 0.0)[0].eigenvalues[0]
