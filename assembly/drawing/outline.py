@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from aag_cad.geometry.surface import unit
+from aag_cad.parts.kinds import Place, kind_of, parts_at
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Blade, Gridshell, Joint, Part, Shell, shell_parts
+from aag_cad.parts.model import Gridshell, Joint, Part, Shell, ridge_parts, shell_parts
 from aag_cad.units import Floats, Vector
 from assembly.base.shell_axes import View, elevation_view, shell_view, vault_view
 from assembly.drawing.part_outlines import Flat, piece_outline
@@ -42,9 +43,9 @@ class _Group:
     joints: tuple[Joint, ...]
 
 
-def _group(shell: Shell, matrix: Floats, drawn: tuple[type[Part], ...]) -> _Group:
+def _group(shell: Shell, matrix: Floats, drawn: tuple[Place, ...]) -> _Group:
     planks = sorted(shell.planks, key=lambda plank: (plank.layer, plank.mark))
-    pieces = sorted((p for p in shell_parts(shell) if isinstance(p, drawn)), key=lambda p: drawn.index(type(p)))
+    pieces = [part for part in parts_at(shell_parts(shell), *drawn) if kind_of(part).outlined]
     return _Group(shell, matrix, (*planks, *pieces), shell.joints)
 
 
@@ -92,8 +93,8 @@ def _outline(
     )
 
 
-def shell_outline(shell: Shell, width: float, margin: float, drawn: tuple[type[Part], ...] = ()) -> Outline:
-    """Return a shell square on from outside, its foot at the bottom; ``drawn`` are kinds of pieces besides planks."""
+def shell_outline(shell: Shell, width: float, margin: float, drawn: tuple[Place, ...] = ()) -> Outline:
+    """Return a shell square on from outside, its foot at the bottom; ``drawn`` are places of pieces besides planks."""
     return _outline([_group(shell, np.eye(4), drawn)], shell_view(shell), width, margin)
 
 
@@ -102,14 +103,14 @@ def elevation_outline(shell: Shell, width: float, margin: float) -> Outline:
     return _outline([_group(shell, np.eye(4), ())], elevation_view(shell), width, margin)
 
 
-def _placed(gridshell: Gridshell, drawn: tuple[type[Part], ...]) -> list[_Group]:
+def _placed(gridshell: Gridshell, drawn: tuple[Place, ...]) -> list[_Group]:
     placed = [_group(shell, frame_matrix(shell.placement), drawn) for shell in gridshell.shells]
-    blades = gridshell.blades if Blade in drawn else ()
-    return [*placed, _Group(None, np.eye(4), blades, gridshell.joints)]
+    pieces = tuple(part for part in parts_at(ridge_parts(gridshell), *drawn) if kind_of(part).outlined)
+    return [*placed, _Group(None, np.eye(4), pieces, gridshell.joints)]
 
 
-def vault_outline(gridshell: Gridshell, width: float, margin: float, drawn: tuple[type[Part], ...] = ()) -> Outline:
-    """Return all shells in plan, the centre on the sheet; ``drawn`` are kinds of pieces besides planks."""
+def vault_outline(gridshell: Gridshell, width: float, margin: float, drawn: tuple[Place, ...] = ()) -> Outline:
+    """Return all shells in plan, the centre on the sheet; ``drawn`` are the places of pieces besides planks."""
     return _outline(_placed(gridshell, drawn), vault_view(), width, margin, around=((0.0, 0.0, 0.0),))
 
 
@@ -128,4 +129,4 @@ def ridge_outline(gridshell: Gridshell, pair: Sequence[str], width: float, margi
     along = unit((side - crown) * [1.0, 1.0, 0.0])
     up = np.array([0.0, 0.0, 1.0])
     view = View(np.array([along, np.cross(up, along), up]))
-    return _outline(_placed(gridshell, (Blade,)), view, width, margin, only=pair)
+    return _outline(_placed(gridshell, ("ridge",)), view, width, margin, only=pair)

@@ -10,18 +10,7 @@ from aag_cad.once import once
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import in_other_shell, short_mark
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import (
-    ClampingBar,
-    Footing,
-    Gridshell,
-    Mullion,
-    Rod,
-    Shell,
-    Shoe,
-    Strap,
-    Strip,
-    shell_parts,
-)
+from aag_cad.parts.model import Gridshell, Shell, shell_parts
 from aag_cad.units import Floats
 from assembly.base.part_groups import shell_kit
 from assembly.base.phases import is_down
@@ -35,8 +24,6 @@ from assembly.plan.site_work import ridge_pairs
 PAGE_WIDTH = 1800.0
 SMALL_WIDTH = 880.0
 MARGIN = 50.0
-ON_SHELLS = (Strap, Mullion, Strip, ClampingBar)
-ON_GROUND = (Footing, Rod, Shoe)
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,9 +157,9 @@ def outlines_of(gridshell: Gridshell) -> Outlines:
     firsts = [shell for shell in gridshell.shells if twins[shell.mark] == shell.mark]
     facing = {pair: ridge_planks(gridshell, pair) for pair in ridge_pairs(gridshell)}
     return Outlines(
-        large={shell.mark: shell_outline(shell, PAGE_WIDTH, MARGIN, ON_SHELLS) for shell in firsts},
+        large={shell.mark: shell_outline(shell, PAGE_WIDTH, MARGIN, ("shell", "cover")) for shell in firsts},
         small={shell.mark: shell_outline(shell, SMALL_WIDTH, MARGIN) for shell in firsts},
-        plan=vault_outline(gridshell, PAGE_WIDTH * 0.8, MARGIN, ON_GROUND),
+        plan=vault_outline(gridshell, PAGE_WIDTH * 0.8, MARGIN, ("ground",)),
         ridges={
             pair: ridge_outline(gridshell, planks, PAGE_WIDTH, MARGIN) for pair, planks in facing.items() if planks
         },
