@@ -169,3 +169,8 @@ def index_of(whole: Shell | Gridshell) -> Index:
         return Index((), whole.beams, shell_parts(whole), whole.joints)
     beams = tuple(beam for shell in whole.shells for beam in shell.beams)
     return Index(whole.shells, beams, all_parts(whole), all_joints(whole))
+
+
+def sorted_planks(gridshell: Gridshell) -> list[Plank]:
+    """Return the planks of all shells sorted by mark, the order of tables and files."""
+    return [plank for _, plank in sorted(index_of(gridshell).planks.items())]
