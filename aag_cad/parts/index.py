@@ -57,6 +57,12 @@ class Index:
         return _by_mark(self.listed_shells)
 
     @cached_property
+    def twins(self) -> dict[str, str]:
+        """The first shell of those that are twins of each other, for each shell; often it is the shell itself."""
+        firsts: dict[str, str] = {}
+        return {mark: firsts.setdefault(shell.twin_of or mark, mark) for mark, shell in self.shells.items()}
+
+    @cached_property
     def parts(self) -> dict[str, Part]:
         """Every part."""
         return _by_mark(self.listed_parts)

@@ -136,8 +136,9 @@ def home_shell(step: Step) -> str:
 def _twinned(backgrounds: Backgrounds, step: Step) -> tuple[Shell, Step, frozenset[str]]:
     """Return the shell whose picture serves for a step, the step with its marks, and what is there before it."""
     home = home_shell(step)
-    twin = backgrounds.twins[home]
-    shell = index_of(backgrounds.gridshell).shells[twin]
+    index = index_of(backgrounds.gridshell)
+    twin = index.twins[home]
+    shell = index.shells[twin]
     there = {in_other_shell(mark, home, twin) for mark in backgrounds.before[step.id] if is_in_shell(mark, home)}
     return shell, twin_step(step, home, twin), frozenset(there)
 
