@@ -188,9 +188,7 @@ def _take(times: list[int], free: list[int], start: int, end: int, people: int) 
         free[i] -= people
 
 
-def _starts(
-    plan: Plan, graph: "nx.DiGraph[str]", found: Mapping[str, Timing], people: int, day: int
-) -> dict[str, int]:
+def _starts(plan: Plan, graph: "nx.DiGraph[str]", found: Mapping[str, Timing], people: int, day: int) -> dict[str, int]:
     """Return the start of each step by the serial scheme: of the steps that may begin, that with the longest tail.
 
     It starts as early as what it waits for and free people allow; an unbroken step waits for the next morning where it
@@ -240,9 +238,7 @@ def schedule_of(plan: Plan, minutes: Mapping[str, int], people: int, hours_per_d
     graph = precedence(plan, minutes)
     found = timings(graph, minutes)
     starts = _starts(plan, graph, found, people, day)
-    steps = (
-        ScheduledStep(s.id, starts[s.id], starts[s.id] + minutes[s.id], s.crew, found[s.id]) for s in plan.steps
-    )
+    steps = (ScheduledStep(s.id, starts[s.id], starts[s.id] + minutes[s.id], s.crew, found[s.id]) for s in plan.steps)
     bound = lower_bound(plan, minutes, people)
     return Schedule(plan.name, people, day, tuple(steps), critical_path(plan, minutes), bound)
 
