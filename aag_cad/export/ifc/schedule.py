@@ -45,7 +45,7 @@ def _iso(moment: datetime) -> str:
 def _task_time(model: IfcModel, step: ScheduledStep, clock: Clock) -> Entity:
     """Write the times of a task: as scheduled for the crew, and the earliest and latest if people were no limit."""
     timing = step.timing
-    return model.file.create_entity(
+    return model.new(
         "IfcTaskTime", DataOrigin="PREDICTED", DurationType="WORKTIME", ScheduleDuration=_span(timing.minutes),
         ScheduleStart=_iso(clock.begins(step.start_minute)), ScheduleFinish=_iso(clock.ends(step.end_minute)),
         EarlyStart=_iso(clock.begins(timing.early_start)), EarlyFinish=_iso(clock.ends(timing.early_finish)),
