@@ -2,11 +2,12 @@
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from aag_cad.geometry.surface import unit
-from aag_cad.parts.kinds import Place, kind_of, parts_at
+from aag_cad.parts.kinds import Kind, Place, kind_of, parts_at
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Joint, Part, Shell, ridge_parts, shell_parts
 from aag_cad.units import Floats, Vector
@@ -18,7 +19,8 @@ from assembly.drawing.part_outlines import Flat, piece_outline
 class Outline:
     """What is drawn of some shells, in units of the sheet: outlines and lines (n, 2), points (2,).
 
-    ``planks`` run from the lowest layer to the highest, ``pieces`` are the other parts that are drawn; ``lines`` are
+    ``planks`` run from the lowest layer to the highest, ``pieces`` are the other parts that are drawn, ``kinds`` the
+    rows of these; ``lines`` are
     centre lines of planks, beams and pieces from their start, ``points`` those of the joints. ``scale`` is sheet units
     a mm, ``origin`` the place of the coordinates' origin.
     """
@@ -31,6 +33,7 @@ class Outline:
     lines: dict[str, Floats]
     points: dict[str, Floats]
     pieces: dict[str, Floats]
+    kinds: dict[str, Kind[Any, Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +93,7 @@ def _outline(
         lines=lines,
         points={mark: (point - low) * scale + margin for mark, point in joints.items()},
         pieces={mark: outline for mark, (outline, _) in drawn.items() if mark not in layers},
+        kinds={part.mark: kind_of(part) for group in groups for part in group.parts if part.mark not in layers},
     )
 
 
