@@ -201,7 +201,9 @@ def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float) -> P
     works = [*_laying(basis, step_of), *_sliding(basis, step_of), *_joining(basis, found, step_of)]
     lifted = {mark: weight for mark, weight in weights.items() if mark not in woven.left_out}
     findings = (*woven.findings, *_waiting(waiting), *lifting_findings(lifted, lifters))
-    return Plan(str(graph.name), tuple(steps_from(works, weights, lifters)), findings)
+    # A step names the parts of a beam too; none of them is heavier or longer than the beam.
+    single = {mark: (float(node["mass_kg"]), float(node["length_mm"])) for mark, node in graph.nodes(data=True)}
+    return Plan(str(graph.name), tuple(steps_from(works, single | weights, lifters)), findings)
 
 
 # Keys of ``Minutes`` by the words for kinds; what the table does not know takes the time of a bolt.

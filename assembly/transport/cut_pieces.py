@@ -9,9 +9,8 @@ import numpy as np
 
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.index import index_of
-from aag_cad.parts.kinds import is_driven, parts_at
 from aag_cad.parts.mesh import shell_mesh
-from aag_cad.parts.model import Joint, Part, Plank, Shell, Timber, shell_parts
+from aag_cad.parts.model import Bolt, Joint, Part, Plank, Screw, Shell, Strap, Stud, Timber
 from aag_cad.parts.quantities import mass
 from aag_cad.units import Floats
 from assembly.base.segments import PlankPiece, Splice
@@ -57,7 +56,10 @@ class Divisible:
     @cached_property
     def small(self) -> dict[str, Part]:
         """Studs, coupling blocks, bolts, screws and straps by mark."""
-        return {part.mark: part for part in parts_at(shell_parts(self.shell), "shell") if part.mark not in self.planks}
+        parts: tuple[Part, ...] = (
+            *self.shell.studs, *self.shell.blocks, *self.shell.bolts, *self.shell.screws, *self.shell.straps,
+        )  # fmt: skip
+        return {part.mark: part for part in parts}
 
     @cached_property
     def masses(self) -> dict[str, float]:
@@ -81,11 +83,11 @@ class Divisible:
 
     @cached_property
     def small_corners(self) -> dict[str, Floats]:
-        """Corners of small parts; blocks lie in the gaps of beams and screws in the timber."""
+        """Corners of studs, bolts and straps; blocks lie in the gaps of beams and screws in the timber."""
         return {
             mark: shell_mesh(part).vertices
             for mark, part in self.small.items()
-            if mark not in index_of(self.shell).blocks and not is_driven(part)
+            if isinstance(part, Stud | Bolt | Strap)
         }
 
     @cached_property
@@ -194,7 +196,7 @@ def _joint_parts(item: Divisible, spans: dict[str, list[PlankPiece]]) -> Iterato
         if len(held) == len(planks):
             yield from small
         elif joint.kind in ("AG", "boundary") and any(item.planks[mark].beam for mark in held):
-            yield from (mark for mark in small if not is_driven(item.small[mark]))
+            yield from (mark for mark in small if not isinstance(item.small[mark], Screw))
 
 
 def _piece_plank(plank: Plank, piece: PlankPiece, left_out: frozenset[str]) -> Plank:

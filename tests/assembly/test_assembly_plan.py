@@ -7,10 +7,12 @@ from dataclasses import replace
 import pytest
 from damage import changed, moved, without
 
+from aag_cad.language import LANGUAGES
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Bolt, Gridshell, Part, all_joints, all_parts, ridge_parts
 from assembly.base.errors import PlanError
 from assembly.base.steps import Plan, Step
+from assembly.booklet.step_words import step_title, step_words
 from assembly.checks.plan import check_plan
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.piece_weights import piece_weights
@@ -105,7 +107,8 @@ def test_the_cover_comes_last(plan: Plan, gridshell: Gridshell) -> None:
 
 def test_tools_fit_the_nuts_of_each_step(plan: Plan) -> None:
     """M8 takes a 13 mm spanner, the M16 rods of the feet one of 24 mm, which nobody carries up to the nodes."""
-    spanners = {step.phase: [tool for tool in step.tools if "spanner" in tool] for step in plan.steps}
+    tools = {step.phase: step_words(step, "en").tools for step in plan.steps}
+    spanners = {phase: [tool for tool in listed if "spanner" in tool] for phase, listed in tools.items()}
     for phase in ("prefabricate", "studs", "tighten", "ridges"):
         assert spanners[phase] == ["two 13 mm spanners"]
     assert spanners["stand"] == ["two 13 mm spanners and two 24 mm spanners"]
@@ -113,7 +116,7 @@ def test_tools_fit_the_nuts_of_each_step(plan: Plan) -> None:
 
 def test_the_bolts_named_at_the_studs_are_those_of_the_studs(plan: Plan) -> None:
     for step in (step for step in plan.steps if step.phase == "studs"):
-        words = " ".join(step.instructions)
+        words = " ".join(step_words(step, "en").instructions)
         assert "(Bolt M8 x 65, a washer" in words
         assert "M8 x 40" not in words
 
@@ -131,7 +134,8 @@ def test_no_screw_is_driven_and_no_edge_goes_in_before_the_shell_has_its_shape(p
         early = [mark for step in steps_of(plan, shell) if step.number < hoist.number for mark in step.marks]
         assert not [mark for mark in early if parse_mark(mark).part[:1] == "W" or parse_mark(mark).family == "E"]
         assert hoist.marks == ()
-        assert hoist.hold
+        assert hoist.held
+        assert step_words(hoist, "en").hold
 
 
 def test_a_geodesic_gets_all_its_screws_in_one_step_from_both_sides(plan: Plan, gridshell: Gridshell) -> None:
@@ -150,7 +154,13 @@ def test_a_geodesic_gets_all_its_screws_in_one_step_from_both_sides(plan: Plan, 
 def test_identical_shells_are_put_together_alike(plan: Plan) -> None:
     def told(shell: str) -> list[tuple[object, ...]]:
         return [
-            (step.id[3:], step.phase, step.title.replace(shell, ""), step.crew, [mark[3:] for mark in step.marks])
+            (
+                step.id[3:],
+                step.phase,
+                *(step_title(step, language).replace(shell, "") for language in LANGUAGES),
+                step.crew,
+                [mark[3:] for mark in step.marks],
+            )
             for step in steps_of(plan, shell)
         ]
 
@@ -176,7 +186,8 @@ def test_nobody_lifts_more_than_allowed(gridshell: Gridshell) -> None:
         heavy = max((weights[mark][0] for mark in lifted), default=0.0)
         assert 1 <= step.crew <= 2
         if step.phase not in ("hoist", "stand", "ridges"):
-            assert heavy <= step.crew * 5.0 or "lifting gear" in step.tools
+            assert heavy <= step.crew * 5.0 or step.gear
+        assert step.gear == ("lifting gear" in step_words(step, "en").tools)
 
 
 def test_a_lone_carpenter_gets_a_plan_too(gridshell: Gridshell) -> None:
@@ -211,7 +222,7 @@ FAULTS: list[tuple[Callable[[Plan], Plan], str]] = [
     (lambda plan: changed(plan, "S1.lay.3", marks=("S1-G-99",)), "S1-G-99: a step adds it, but"),
     (lambda plan: changed(plan, "S1.lay.3", predecessors=()), "nothing forces step S1.lay.1 before"),
     (lambda plan: changed(plan, "S1.hoist", predecessors=()), "is a stud, but nothing forces"),
-    (lambda plan: changed(plan, "S1.hoist", hold=""), "S1: expected one hoist step with a hold point"),
+    (lambda plan: changed(plan, "S1.hoist", held=False), "S1: expected one hoist step with a hold point"),
     (lambda plan: changed(plan, "S1.edge.lower", predecessors=()), "S1-E-01 is an edge plank, but nothing forces"),
     (lambda plan: changed(plan, "S2.tighten", predecessors=()), "S2-G-01 is part of the stiff shell"),
     (lambda plan: _swapped(plan, "S1.lay.3", "S1.lay.5"), "does not come before it"),
@@ -247,7 +258,8 @@ def test_the_check_finds_a_damaged_plan(
 def test_blades_join_the_shells_that_they_name_once_both_stand(gridshell: Gridshell) -> None:
     blades = tuple(blade for blade in gridshell.blades if blade.mark in ("R23-01", "R23-02"))
     joints = tuple(joint for joint in gridshell.joints if joint.mark in ("R23-01", "R23-02"))
-    works = {work.id: work for work in site_works(replace(gridshell, blades=blades, joints=joints))}
+    stiff = {shell.mark: f"{shell.mark}.tighten" for shell in gridshell.shells}
+    works = {work.id: work for work in site_works(replace(gridshell, blades=blades, joints=joints), stiff)}
     bolts = tuple(f"{blade}-B{i}" for blade in ("R23-01", "R23-02") for i in (1, 2, 3, 4))
     assert works["site.ridge.S2.S3"].marks == ("R23-01", "R23-02", *bolts)
     assert {"site.stand.S2", "site.stand.S3"} <= set(works["site.ridge.S2.S3"].after)

@@ -30,9 +30,9 @@ _RANGE = re.compile(r"(?:(S\d)-)?([A-Z]+\d*)-(\d+)(?: … (?:S\d-)?[A-Z]+\d*-(\d
 
 
 @pytest.fixture(scope="module")
-def booklets(german: Planned, gridshell: Gridshell) -> tuple[Booklet, Booklet]:
+def booklets(planned: Planned, gridshell: Gridshell) -> tuple[Booklet, Booklet]:
     common = common_of(gridshell, "de")
-    return sequence_booklet(german, common), disassembly_booklet(german, common)
+    return sequence_booklet(planned, common), disassembly_booklet(planned, common)
 
 
 def page_texts(booklet: Booklet) -> Iterator[str]:

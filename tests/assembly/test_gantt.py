@@ -5,11 +5,12 @@ from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
+from making import a_step
 
 from aag_cad.design_making import Minutes
 from aag_cad.parts.model import Gridshell
 from assembly.base.phases import PHASES, Phase
-from assembly.base.steps import Plan, Step
+from assembly.base.steps import Plan
 from assembly.booklet.gantt import HEIGHT, WIDTH, gantt_svg
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.disassembly import disassembly_of
@@ -61,10 +62,8 @@ def test_the_chart_is_black_white_and_grey(sheet: tuple[Plan, Schedule, ElementT
 
 
 def test_the_bars_are_as_long_as_the_steps() -> None:
-    def step(number: int, after: tuple[str, ...]) -> Step:
-        return Step(number, f"s{number}", "hoist", "", "S1", (), (), (), 1, after, ())
-
-    plan = Plan("two", (step(1, ()), step(2, ("s1",))))
+    steps = (a_step(1, phase="hoist", shell="S1"), a_step(2, phase="hoist", shell="S1", predecessors=("s1",)))
+    plan = Plan("two", steps)
     root = ElementTree.fromstring(gantt_svg(plan, schedule_of(plan, {"s1": 120, "s2": 240}, 2), "Two"))
     bars = [group[0] for group in root.iter(f"{SVG}g") if group.get("fill") == "#000" and len(group) == 1]
     wide = [float(bar.get("width", "0")) for bar in bars if bar.tag == f"{SVG}rect" and float(bar.get("x", "0")) > 200]
@@ -73,7 +72,7 @@ def test_the_bars_are_as_long_as_the_steps() -> None:
 
 def test_every_phase_has_one_look_on_the_chart() -> None:
     def bar(phase: Phase) -> Plan:
-        return Plan("one", (Step(1, "s1", phase, "", "S1", (), (), (), 1, (), ()),))
+        return Plan("one", (a_step(1, phase=phase, shell="S1"),))
 
     legends = set()
     for phase in PHASES:

@@ -2,25 +2,28 @@
 
 import re
 import uuid
+from dataclasses import replace
 from datetime import date, datetime
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from making import a_step
 
-from aag_cad.design_making import Minutes
+from aag_cad.design_making import Crew, Minutes
 from aag_cad.parts.model import Gridshell
 from assembly.base.errors import PlanError
-from assembly.base.steps import Plan, Step
+from assembly.base.steps import Plan
 from assembly.booklet.calendar import calendar_bytes, write_calendar
+from assembly.booklet.step_words import step_words
 from assembly.plan.assembly_plan import plan_of
-from assembly.plan.clock import working_day
+from assembly.plan.clock import Clock, clock_of, working_day
 from assembly.plan.durations import step_minutes
 from assembly.plan.schedule import Schedule, schedule_of
 
 MONDAY = date(2027, 3, 1)
-
+CLOCK = Clock(MONDAY, day_minutes=480, days_per_week=5)
 
 Read = dict[str, str]
 
@@ -52,14 +55,15 @@ def scheduled(gridshell: Gridshell) -> tuple[Plan, Schedule]:
 
 def test_each_step_is_one_event_with_its_times(scheduled: tuple[Plan, Schedule], tmp_path: Path) -> None:
     plan, schedule = scheduled
-    write_calendar(plan, schedule, MONDAY, tmp_path / "schedule.ics")
+    write_calendar(plan, schedule, CLOCK, tmp_path / "schedule.ics")
     head, events = read((tmp_path / "schedule.ics").read_bytes())
     assert (head["VERSION"], head["CALSCALE"]) == ("2.0", "GREGORIAN")
     assert len(events) == len(plan.steps)
     assert len({event["UID"] for event in events}) == len(plan.steps)
     for step, when, event in zip(plan.steps, schedule.steps, events, strict=True):
-        assert event["SUMMARY"] == f"{step.number} {step.title}"
-        assert all(line in event["DESCRIPTION"] for line in step.instructions)
+        words = step_words(step, "en")
+        assert event["SUMMARY"] == f"{step.number} {words.title}"
+        assert all(line in event["DESCRIPTION"] for line in words.instructions)
         assert uuid.UUID(event["UID"]).version == 5
         begin, end = at(event, "DTSTART"), at(event, "DTEND")
         number, minute = divmod(when.start_minute, 480)
@@ -71,21 +75,21 @@ def test_each_step_is_one_event_with_its_times(scheduled: tuple[Plan, Schedule],
         assert event["DTSTAMP"] == "20270301T000000Z"
 
 
-def test_a_german_plan_gives_a_german_calendar(gridshell: Gridshell) -> None:
-    plan = plan_of(gridshell, 4, 25.0, language="de")
-    schedule = schedule_of(plan, {step.id: 60 for step in plan.steps}, 4)
-    head, events = read(calendar_bytes(plan, schedule, MONDAY))
+def test_a_calendar_prints_in_german(scheduled: tuple[Plan, Schedule]) -> None:
+    plan, schedule = scheduled
+    head, events = read(calendar_bytes(plan, schedule, CLOCK, "de"))
     assert head["PRODID"].endswith("//DE")
     for step, event in zip(plan.steps, events, strict=True):
-        lines = event["DESCRIPTION"].splitlines()
+        lines, words = event["DESCRIPTION"].splitlines(), step_words(step, "de")
+        assert event["SUMMARY"] == f"{step.number} {words.title}"
         assert lines[0].startswith("1 Person" if step.crew == 1 else f"{step.crew} Leute")
         assert ("nach Schritt" in lines[0]) == bool(step.predecessors)
-        assert lines[1] == f"Werkzeug: {', '.join(step.tools)}"
-        assert (lines[-1] == f"HALT: {step.hold}") == bool(step.hold)
+        assert lines[1] == f"Werkzeug: {', '.join(words.tools)}"
+        assert (lines[-1] == f"HALT: {words.hold}") == step.held
 
 
 def test_lines_end_with_cr_lf_and_have_at_most_75_octets(scheduled: tuple[Plan, Schedule]) -> None:
-    lines = calendar_bytes(*scheduled, MONDAY).split(b"\r\n")
+    lines = calendar_bytes(*scheduled, CLOCK).split(b"\r\n")
     assert lines[-1] == b""
     assert max(map(len, lines)) <= 75
     assert b"\n" not in b"".join(lines)
@@ -94,19 +98,16 @@ def test_lines_end_with_cr_lf_and_have_at_most_75_octets(scheduled: tuple[Plan, 
 
 @given(st.text(st.characters(exclude_categories=["Cs", "Cc"], include_characters="\n,;\\"), min_size=1, max_size=300))
 def test_any_title_survives_the_calendar(title: str) -> None:
-    plan = Plan("one", (Step(1, "s1", "studs", title, "", (), (), (), 1, (), ()),))
-    data = calendar_bytes(plan, schedule_of(plan, {"s1": 60}, 1), MONDAY)
+    plan = Plan("one", (a_step(1, title),))
+    data = calendar_bytes(plan, schedule_of(plan, {"s1": 60}, 1), CLOCK)
     assert read(data)[1][0]["SUMMARY"] == f"1 {title}"
     assert max(map(len, data.split(b"\r\n"))) <= 75
 
 
 def test_a_step_that_ends_with_the_day_ends_in_the_evening_and_the_next_begins_in_the_morning() -> None:
-    steps = tuple(
-        Step(i, f"s{i}", "studs", f"{i}", "", (), (), (), 1, (f"s{i - 1}",) if i > 1 else (), ()) for i in (1, 2)
-    )
-    plan = Plan("two", steps)
-    friday = date(2027, 3, 5)
-    _, (first, second) = read(calendar_bytes(plan, schedule_of(plan, {"s1": 480, "s2": 500}, 1), friday, 5))
+    plan = Plan("two", (a_step(1, "1"), a_step(2, "2", predecessors=("s1",))))
+    friday = replace(CLOCK, first=date(2027, 3, 5))
+    _, (first, second) = read(calendar_bytes(plan, schedule_of(plan, {"s1": 480, "s2": 500}, 1), friday))
     assert at(first, "DTEND") == datetime(2027, 3, 5, 15)
     assert at(second, "DTSTART") == datetime(2027, 3, 8, 7)
     assert at(second, "DTEND") == datetime(2027, 3, 9, 7, 20)
@@ -118,9 +119,10 @@ def test_seven_days_a_week_have_no_weekend() -> None:
 
 
 def test_a_start_on_a_day_off_is_refused(scheduled: tuple[Plan, Schedule]) -> None:
+    crew = Crew.model_validate({"people": 4, "lift_limit": 25.0, "start": "2027-03-06"})
     with pytest.raises(PlanError, match=r"crew\.start: 2027-03-06 is a Saturday"):
-        calendar_bytes(*scheduled, date(2027, 3, 6))
+        clock_of(scheduled[1], crew)
 
 
 def test_the_same_schedule_gives_the_same_calendar(scheduled: tuple[Plan, Schedule]) -> None:
-    assert calendar_bytes(*scheduled, MONDAY) == calendar_bytes(*scheduled, MONDAY)
+    assert calendar_bytes(*scheduled, CLOCK) == calendar_bytes(*scheduled, CLOCK)

@@ -41,19 +41,6 @@ class IfcModel:
     axis: Entity
     identity: Entity
 
-    def new(self, entity: str, *values: object, **attributes: object) -> Entity:
-        """Write an entity with its first attributes in their order and others by name; RuntimeError if one is unknown.
-
-        ``file.create_entity`` takes twice as long: it looks for transactions and writes what is empty as empty again.
-        """
-        made = self.file.create(entity, -1)
-        for i, value in enumerate(values):
-            if value is not None:
-                made.set_attribute_value_py(i, value)
-        for name, value in attributes.items():
-            made.set_attribute_value_py(made.get_argument_index(name), value)
-        return made
-
     @property
     def schema(self) -> IfcSchema:
         """The schema that the file follows."""
@@ -75,7 +62,7 @@ def rooted(model: IfcModel, entity: str, names: tuple[str, ...], *values: object
 
     Attributes that the schema does not have are left out.
     """
-    return model.new(
+    return model.file.create_entity(
         entity, guid(model.project_id, *names), model.owner, *values, **known(model.schema, entity, **attributes)
     )
 
@@ -160,13 +147,13 @@ def local_placement(model: IfcModel, parent: Entity | None, frame: Frame | None 
     """
     place = model.identity
     if frame is not None:
-        place = model.new(
+        place = model.file.create_entity(
             "IfcAxis2Placement3D",
-            model.new("IfcCartesianPoint", _rounded(frame.origin, 4)),
-            model.new("IfcDirection", _rounded(frame.z, 9)),
-            model.new("IfcDirection", _rounded(frame.x, 9)),
+            model.file.create_entity("IfcCartesianPoint", _rounded(frame.origin, 4)),
+            model.file.create_entity("IfcDirection", _rounded(frame.z, 9)),
+            model.file.create_entity("IfcDirection", _rounded(frame.x, 9)),
         )
-    return model.new("IfcLocalPlacement", parent, place)
+    return model.file.create_entity("IfcLocalPlacement", parent, place)
 
 
 def aggregate(model: IfcModel, name: str, whole: Entity, parts: Iterable[Entity]) -> None:
