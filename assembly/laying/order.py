@@ -14,9 +14,8 @@ import numpy as np
 
 from aag_cad.families import EDGES
 from aag_cad.parts.model import Gridshell, Shell, Stud
-from aag_cad.units import MM_PER_M, Floats, Vector
+from aag_cad.units import Floats, Vector
 from assembly.base.errors import PlanError
-from assembly.base.lifters import LONG_PIECE
 from assembly.base.shell_axes import best_plane, shell_view, sweep_direction
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import Interlacing, Slide, interlacing, refuse_left_out
@@ -31,7 +30,6 @@ from assembly.laying.walking import (
     on_floor,
     path_length,
     serpentine,
-    spanning_tree_length,
     stack_places,
     stepped_over,
     sweep_order,
@@ -51,31 +49,13 @@ class FlatOrder:
     """Runs of beams or geodesics that are laid one after the other, each from side to side; then rows of studs.
 
     ``slides`` come after the runs, in their order. Edge planks are left out: they are pushed in between the layers when
-    the shell has its shape. Walked are ``carried_m`` metres from the ``stacks`` (by shell and family, mm on the floor)
-    and back, and ``path_m`` from stud to stud. ``tree_m`` is the minimum spanning tree of the studs, which no path
-    undercuts. People step over ``stepped_over`` members of the run that they lay; ``handlings`` of pieces over 3 m are
-    one each and another for each slide.
+    the shell has its shape. ``stacks`` say where each is carried from, by shell and family, mm on the floor.
     """
 
     runs: tuple[tuple[str, ...], ...]
     rows: tuple[tuple[str, ...], ...]
     slides: tuple[Slide, ...] = ()
     stacks: Mapping[tuple[str, str], Point] = field(default_factory=dict)
-    carried_m: float = 0.0
-    path_m: float = 0.0
-    tree_m: float = 0.0
-    stepped_over: int = 0
-    handlings: int = 0
-
-    @property
-    def walked_m(self) -> float:
-        """All metres walked."""
-        return self.carried_m + self.path_m
-
-    @property
-    def least_m(self) -> float:
-        """Metres that no order undercuts: each stack is the best of its places, and no path is shorter than a tree."""
-        return self.carried_m + min(self.path_m, self.tree_m)
 
 
 def groups_of(items: Sequence[_T], most: int) -> tuple[tuple[_T, ...], ...]:
@@ -184,24 +164,16 @@ def _stack_of(sort: _Sort) -> tuple[str, str]:
 
 def _stacks(
     lines: Mapping[str, Line], sorts: Mapping[str, _Sort], slides: Sequence[Slide]
-) -> tuple[dict[tuple[str, str], Point], float]:
-    """Return the best place of each stack, and the metres from all stacks to the lines and back."""
+) -> dict[tuple[str, str], Point]:
+    """Return the best place of each stack: the shortest ways from all of them to the lines and back."""
     calls: dict[tuple[str, str], list[Point]] = defaultdict(list)
-    slid, pushed = {slide.unit: slide for slide in slides}, 0.0
+    slid = {slide.unit: slide for slide in slides}
     for unit, line in sorted(lines.items()):
-        first = line.middle
-        if unit in slid:
-            first = line.before(slid[unit].end)
-            pushed += float(np.hypot(*np.subtract(first, line.middle)))
+        first = line.before(slid[unit].end) if unit in slid else line.middle
         calls[_stack_of(sorts[unit])] += [first, line.middle]
     points = np.array([end for line in lines.values() for end in (line.start, line.end)]).reshape(-1, 2)
     places = stack_places(points) if len(points) else points
-    stacks, carried = dict[tuple[str, str], Point](), pushed
-    for stack, listed in sorted(calls.items()):
-        best, walked = best_stack(places, np.array(listed))
-        stacks[stack] = (float(places[best, 0]), float(places[best, 1]))
-        carried += walked
-    return stacks, carried / MM_PER_M
+    return {stack: _point(places[best_stack(places, np.array(listed))]) for stack, listed in sorted(calls.items())}
 
 
 def _floor_order(
@@ -210,31 +182,17 @@ def _floor_order(
     precedence: "nx.DiGraph[str]",
     slides: Sequence[Slide],
     rows: tuple[tuple[str, ...], ...],
-    studs: Mapping[str, Point],
 ) -> FlatOrder:
     """Return the order on one floor."""
     slid = {slide.unit for slide in slides}
     runs = _runs(precedence, {unit: sort for unit, sort in sorts.items() if unit not in slid})
-    stacks, carried = _stacks(lines, sorts, slides)
-    laid, stepped = [], 0
+    stacks, laid = _stacks(lines, sorts, slides), []
     for run in runs:
         order = sweep_order({unit: lines[unit] for unit in run})
         forward, backward = stepped_over([lines[unit] for unit in order], stacks[_stack_of(sorts[run[0]])])
         falling = order[0] > order[-1]
         laid.append(order if (forward, falling) <= (backward, not falling) else order[::-1])
-        stepped += min(forward, backward)
-    points = on_floor(np.array([studs[stud] for row in rows for stud in row]).reshape(-1, 2))
-    return FlatOrder(
-        runs=tuple(laid),
-        rows=rows,
-        slides=tuple(slides),
-        stacks=stacks,
-        carried_m=carried,
-        path_m=path_length(points) / MM_PER_M,
-        tree_m=spanning_tree_length(points) / MM_PER_M,
-        stepped_over=stepped,
-        handlings=sum((line.length > LONG_PIECE) * (1 + (unit in slid)) for unit, line in lines.items()),
-    )
+    return FlatOrder(tuple(laid), rows, tuple(slides), stacks)
 
 
 def flat_order(shell: Shell, woven: Interlacing | None = None) -> FlatOrder:
@@ -258,7 +216,7 @@ def flat_order(shell: Shell, woven: Interlacing | None = None) -> FlatOrder:
     studs = {stud.mark: _point(on_floor(np.array(stud.frame.origin) @ axes.T)) for stud in shell.studs}
     precedence = woven.precedence if woven else layer_precedence(shell)
     slides = [slide for slide in woven.slides if slide.unit in lines] if woven else []
-    return _floor_order(lines, sorts, precedence, slides, courses(stud_rows(shell), studs), studs)
+    return _floor_order(lines, sorts, precedence, slides, courses(stud_rows(shell), studs))
 
 
 def flat_orders(gridshell: Gridshell) -> dict[str, FlatOrder]:
@@ -318,17 +276,12 @@ def flat_order_of(
             for stud, position in _places(graph, studs[shell], units).items()
         }
         slides = [slide for slide in interlacing.slides if slide.unit in lines]
-        orders.append(_floor_order(lines, sorts, interlacing.precedence, slides, walking_rows(places), places))
+        orders.append(_floor_order(lines, sorts, interlacing.precedence, slides, walking_rows(places)))
     return FlatOrder(
         runs=tuple(run for order in orders for run in order.runs),
         rows=tuple(row for order in orders for row in order.rows),
         slides=tuple(slide for order in orders for slide in order.slides),
         stacks={stack: place for order in orders for stack, place in order.stacks.items()},
-        carried_m=sum(order.carried_m for order in orders),
-        path_m=sum(order.path_m for order in orders),
-        tree_m=sum(order.tree_m for order in orders),
-        stepped_over=sum(order.stepped_over for order in orders),
-        handlings=sum(order.handlings for order in orders),
     )
 
 

@@ -12,9 +12,7 @@ from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import minimum_spanning_tree
-from scipy.spatial import Delaunay, KDTree
+from scipy.spatial import KDTree
 
 from aag_cad.units import Floats
 
@@ -24,7 +22,6 @@ STACK_MARGIN = 1000.0
 STACK_PACE = 1000.0
 # Coordinates are rounded to this many decimals of a mm, so that points that are level stay so on every machine.
 _DECIMALS = 3
-_ONE_LINE = 1e-9
 _SAME = 1e-3
 _ROW_HEIGHTS = (0.5, 1.5, 3.5)
 
@@ -67,14 +64,13 @@ def stack_places(points: Floats) -> Floats:
     return on_floor(np.vstack(sides))
 
 
-def best_stack(places: Floats, calls: Floats) -> tuple[int, float]:
-    """Return which of the places (m, 2) lies nearest to all calls (k, 2), and the sum of its distances to them, mm.
+def best_stack(places: Floats, calls: Floats) -> int:
+    """Return which of the places (m, 2) lies nearest to all calls (k, 2), by the sum of its distances to them.
 
     A call is a way to the stack or from it. Of equal places the first one counts.
     """
     sums = [float(np.round(np.hypot(*(calls - place).T).sum(), _DECIMALS)) for place in places]
-    best = int(np.argmin(sums))
-    return best, sums[best]
+    return int(np.argmin(sums))
 
 
 def sweep_order(lines: Mapping[str, Line]) -> tuple[str, ...]:
@@ -117,26 +113,6 @@ def stepped_over(order: Sequence[Line], stack: Point) -> tuple[int, int]:
 def path_length(points: Floats) -> float:
     """Return the length of the path along points (n, 2) in their order, mm."""
     return float(np.hypot(*np.diff(points, axis=0).T).sum()) if len(points) > 1 else 0.0
-
-
-def spanning_tree_length(points: Floats) -> float:
-    """Return the length of the minimum spanning tree of points (n, 2), mm: no path along them is shorter.
-
-    It lies on the edges of their Delaunay triangulation (Preparata and Shamos 1985, section 6.1).
-    """
-    points = np.unique(on_floor(points), axis=0)
-    if len(points) < 2:
-        return 0.0
-    centred = points - points.mean(axis=0)
-    _, sizes, axes = np.linalg.svd(centred, full_matrices=False)
-    if sizes.size < 2 or sizes[1] <= _ONE_LINE * sizes[0]:
-        return float(np.ptp(centred @ axes[0]))
-    corners = Delaunay(points).simplices
-    a, b = np.vstack([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]).T
-    pairs = np.unique(np.sort(np.column_stack([a, b]), axis=1), axis=0)
-    lengths = np.hypot(*(points[pairs[:, 0]] - points[pairs[:, 1]]).T)
-    graph = csr_array((lengths, (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points)))
-    return float(minimum_spanning_tree(graph).sum())
 
 
 def _bands(values: Floats, others: Floats, height: float) -> tuple[tuple[int, ...], ...]:
