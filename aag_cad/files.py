@@ -85,8 +85,8 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     write_bytes(path, text.encode("utf-8"))
 
 
-def csv_text(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table as CSV: one header line, line feeds, quotes only where they are needed."""
+def write_csv(path: str | os.PathLike[str], header: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
+    """Write a table as CSV: one header line, LF, quotes only where needed; FileError if it cannot be written."""
     out = io.StringIO()
     csv.writer(out, lineterminator="\n").writerows([header, *rows])
-    return out.getvalue()
+    write_text(path, out.getvalue())

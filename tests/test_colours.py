@@ -13,7 +13,7 @@ from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import colour_name
 from aag_cad.parts.model import Gridshell, all_joints, all_parts
 from assembly.base.names import family_name
-from assembly.pictures.step_pictures import NEW, PIECES, STEEL, THERE
+from assembly.pictures.step_pictures import NEW, PIECES, THERE
 
 # What a reader tells apart side by side in grey: about a seventh of the way from black to white.
 APART = 15.0
@@ -40,9 +40,9 @@ def test_parts_that_meet_differ_in_lightness_so_that_grey_print_shows_them(grids
 
 def test_what_is_new_in_a_step_is_darker_than_what_is_there_already() -> None:
     there = lightness(THERE.fill)
-    for style in (*NEW.values(), STEEL):
+    for style in (*NEW.values(), PIECES["steel"]):
         assert lightness(style.fill) <= there - APART
-    assert {style.fill for style in (*NEW.values(), *PIECES.values(), STEEL)} <= set(LEGEND.values())
+    assert {style.fill for style in (*NEW.values(), *PIECES.values())} <= set(LEGEND.values())
 
 
 def test_lightness_runs_from_black_to_white_and_is_that_of_known_greys() -> None:

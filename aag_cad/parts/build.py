@@ -2,15 +2,15 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Sequence
-from dataclasses import fields, is_dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 
 from aag_cad.design import Design
 from aag_cad.families import GEODESICS
-from aag_cad.geometry.framed import FramedCurve, frames_at
+from aag_cad.geometry.framed import frames_at
 from aag_cad.geometry.revolution import turn
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork
 from aag_cad.parts.blades import BladeJoint, blade_joints, own_sides
@@ -44,6 +44,7 @@ from aag_cad.parts.model import (
     Timber,
 )
 from aag_cad.parts.straps import strap_joint
+from aag_cad.parts.twins import renamed
 from aag_cad.units import Floats, vector
 
 _T = TypeVar("_T")
@@ -187,21 +188,9 @@ def _shell(design: Design, network: CurveNetwork) -> tuple[Shell, list[BladeJoin
     return covered(shell, placed_facade(design, network, shell)), blades
 
 
-def _renamed(value: _T, rename: Callable[[str], str]) -> _T:
-    """Return plain data with every text renamed; curves are shared, not copied."""
-    if isinstance(value, str):
-        return rename(value)  # type: ignore[return-value]
-    if isinstance(value, tuple):
-        return tuple(_renamed(item, rename) for item in value)  # type: ignore[return-value]
-    if is_dataclass(value) and not isinstance(value, type | FramedCurve):
-        changed = {f.name: _renamed(getattr(value, f.name), rename) for f in fields(value)}
-        return replace(value, **changed)
-    return value
-
-
 def _copy_of(value: _T, index: int, count: int) -> _T:
     """Return what belongs to the first shell, and to the ridges beside it, as that of the shell ``index`` places on."""
-    return _renamed(value, lambda text: turned_mark(text, index, count))
+    return renamed(value, lambda text: turned_mark(text, index, count))
 
 
 def _turned(frame: Frame, placement: Frame) -> Frame:
@@ -235,7 +224,8 @@ def gridshell_from(design: Design, network: CurveNetwork) -> Gridshell:
     """Return the whole gridshell: the shell of the network, repeated about the centre (paper sections 3.1 and 3.2)."""
     first, blade_joints_of_first = _shell(design, network)
     count = design.shells.count
-    shells = [replace(_copy_of(first, i, count), placement=_placement(i, count)) for i in range(count)]
+    copies = (replace(_copy_of(first, i, count), twin_of=first.mark) for i in range(1, count))
+    shells = [replace(shell, placement=_placement(i, count)) for i, shell in enumerate((first, *copies))]
     blades, bolts, joints = _ridges(design, blade_joints_of_first)
     timber, strength = design.timber, design.timber.strength
     return Gridshell(

@@ -98,12 +98,6 @@ def _own_pairs(gridshell: Gridshell) -> set[tuple[str, str]]:
     }
 
 
-def _repeated(bodies: list[_Body], count: int) -> set[int]:
-    """Return the indices of shells that are equal to the first, so that their inside need not be looked at again."""
-    keys = [[(body.key, part_frame(body.part)) for body in bodies if body.shell == i] for i in range(count)]
-    return {i for i in range(1, count) if keys[i] == keys[0]}
-
-
 def clashes(gridshell: Gridshell, limit: float) -> list[Clash]:
     """Return the pairs of parts that reach more than ``limit`` mm into each other, deepest first, vault coordinates.
 
@@ -111,11 +105,12 @@ def clashes(gridshell: Gridshell, limit: float) -> list[Clash]:
     other part's own coordinates, where their depth is exact. A bolt or screw belongs into the members of its own joint
     and is not held against them.
     """
-    shells, keys = gridshell.shells, index_of(gridshell).keys
+    shells, keys, twins = gridshell.shells, index_of(gridshell).keys, index_of(gridshell).twins
     wholes = [(i, shell.placement, shell_parts(shell)) for i, shell in enumerate(shells)]
     wholes.append((_BETWEEN, UNMOVED, ridge_parts(gridshell)))
     bodies = [_body(part, keys[part.mark], i, placement) for i, placement, parts in wholes for part in parts]
-    own, repeated = _own_pairs(gridshell), _repeated(bodies, len(shells))
+    # What happens inside a shell happens inside its twins.
+    own, repeated = _own_pairs(gridshell), {i for i, shell in enumerate(shells) if twins[shell.mark] != shell.mark}
     samples = {body.key: _point_groups(body.part) for body in {body.key: body for body in bodies}.values()}
     pieces = [piece for index, body in enumerate(bodies) for piece in _pieces(index, body, samples[body.key])]
     inside: dict[int, list[tuple[int, Floats]]] = defaultdict(list)

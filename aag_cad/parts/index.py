@@ -57,6 +57,12 @@ class Index:
         return _by_mark(self.listed_shells)
 
     @cached_property
+    def twins(self) -> dict[str, str]:
+        """The first shell of those that are twins of each other, for each shell; often it is the shell itself."""
+        firsts: dict[str, str] = {}
+        return {mark: firsts.setdefault(shell.twin_of or mark, mark) for mark, shell in self.shells.items()}
+
+    @cached_property
     def parts(self) -> dict[str, Part]:
         """Every part."""
         return _by_mark(self.listed_parts)
@@ -169,3 +175,8 @@ def index_of(whole: Shell | Gridshell) -> Index:
         return Index((), whole.beams, shell_parts(whole), whole.joints)
     beams = tuple(beam for shell in whole.shells for beam in shell.beams)
     return Index(whole.shells, beams, all_parts(whole), all_joints(whole))
+
+
+def sorted_planks(gridshell: Gridshell) -> list[Plank]:
+    """Return the planks of all shells sorted by mark, the order of tables and files."""
+    return [plank for _, plank in sorted(index_of(gridshell).planks.items())]

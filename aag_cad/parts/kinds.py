@@ -3,11 +3,12 @@
 A new kind is its class, its row here and its placement; its name in print stands in ``words/parts.toml``.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Generic, Literal, TypeAlias, TypeVar
 
 from aag_cad.colours import LEGEND, srgb
+from aag_cad.families import FAMILIES
 from aag_cad.parts.model import (
     Blade,
     Bolt,
@@ -184,6 +185,24 @@ def shaped(part: Part) -> tuple[Shape[Any], Any]:
     """Return the shape of a part, and what the part is to it."""
     row = KINDS[type(part)]
     return row.shape, row.form(part)
+
+
+def parts_at(parts: Iterable[Part], *places: Place) -> list[Part]:
+    """Return those of some parts that have one of some places, in the order in which kinds are put in place."""
+    order = list(KINDS)
+    return sorted((p for p in parts if kind_of(p).place in places), key=lambda part: order.index(type(part)))
+
+
+def is_driven(part: Part) -> bool:
+    """Return whether a part is a fastener without a nut, which is driven into the timber."""
+    shape, form = shaped(part)
+    return shape is THREADED and all(piece.name != "nut" for piece in form.pieces)
+
+
+def minutes_key(part: Part) -> str:
+    """Return the key of the crew's time for putting a part in place (``aag_cad.design_making.Minutes``)."""
+    row = kind_of(part)
+    return FAMILIES[part.family].minutes if isinstance(part, Plank) else row.minutes or row.key
 
 
 def colour_name(part: Part) -> str:

@@ -110,8 +110,8 @@ def family_mark(text: str) -> str:
 
 
 def is_in_shell(text: str, shell: str) -> bool:
-    """Return whether a mark is that of a shell or of something in it."""
-    return text == shell or text.startswith(f"{shell}-")
+    """Return whether a mark is that of a shell, of something in it, or the name of a segment of it."""
+    return text == shell or text.startswith((f"{shell}-", f"{shell}."))
 
 
 def in_other_shell(text: str, shell: str, other: str) -> str:

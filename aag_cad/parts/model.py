@@ -307,7 +307,9 @@ class Joint:
 class Shell:
     """One shell: where it stands in the vault, and all its parts in its own coordinates.
 
-    ``more`` holds the parts of kinds that have no field here.
+    ``more`` holds the parts of kinds that have no field here. ``twin_of`` is the shell that it is a copy of, "" if it
+    is none: turned about the centre, equal in its own coordinates but for the numbers in its marks. Who changes a copy
+    takes the record away.
     """
 
     mark: str
@@ -327,6 +329,7 @@ class Shell:
     strips: tuple[Strip, ...] = ()
     clamps: tuple[ClampingBar, ...] = ()
     more: tuple[Part, ...] = ()
+    twin_of: str = ""
 
     def __repr__(self) -> str:
         """Return how much there is of what, in short."""

@@ -2,8 +2,8 @@
 
 import json
 import math
-from dataclasses import MISSING, fields, is_dataclass
-from functools import cache
+from dataclasses import MISSING, fields, is_dataclass, replace
+from functools import cache, partial
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -11,7 +11,9 @@ import numpy as np
 from aag_cad.errors import FileError
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.parts.kinds import KINDS, kind_of
+from aag_cad.parts.marks import turned_mark
 from aag_cad.parts.model import SCHEMA_VERSION, Gridshell, Part, Shell
+from aag_cad.parts.twins import renamed
 from aag_cad.units import Floats
 
 _hints = cache(get_type_hints)
@@ -109,6 +111,20 @@ def gridshell_json(gridshell: Gridshell) -> str:
     return json.dumps(_plain(gridshell), separators=(",", ":")) + "\n"
 
 
+def _refuse_false_twins(shells: tuple[Shell, ...]) -> None:
+    """Refuse a shell that says it is a twin and is none: what is planned for its first shell would be wrong for it."""
+    for place, shell in enumerate(shells):
+        first = next((i for i, other in enumerate(shells[:place]) if other.mark == shell.twin_of), None)
+        if first is None and not shell.twin_of:
+            continue
+        where, remedy = f"gridshell.shells[{place}].twin_of", "leave twin_of out"
+        if first is None or shells[first].twin_of:
+            raise FileError(f"{where}: {shell.twin_of!r} is no shell before it that is none's twin; {remedy}")
+        own = renamed(shells[first], partial(turned_mark, places=place - first, count=len(shells)))
+        if own != replace(shell, twin_of="", placement=own.placement):
+            raise FileError(f"{where}: {shell.mark} differs from {shell.twin_of} in its own coordinates; {remedy}")
+
+
 def read_gridshell(text: str) -> Gridshell:
     """Return the gridshell in a JSON text; FileError with the path in the file where it does not fit."""
     try:
@@ -121,4 +137,5 @@ def read_gridshell(text: str) -> Gridshell:
             f"gridshell.json: schema_version {version!r}, this program reads {SCHEMA_VERSION}; build the design again"
         )
     gridshell: Gridshell = value_of(Gridshell, data, "gridshell")
+    _refuse_false_twins(gridshell.shells)
     return gridshell

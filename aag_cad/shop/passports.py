@@ -8,6 +8,7 @@ import numpy as np
 from aag_cad.errors import DesignError
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.mechanics.checks.lamella import lamella_stress
+from aag_cad.parts.index import sorted_planks
 from aag_cad.parts.model import Blank, CrossSection, Gridshell, Hole, Plank, Timber
 from aag_cad.parts.quantities import largest_twist, smallest_radius
 from aag_cad.units import Floats
@@ -148,9 +149,9 @@ def passport(plank: Plank, timber: Timber, design: str, *, service_life_years: f
 
 def passports(gridshell: Gridshell, *, service_life_years: float = SERVICE_LIFE_YEARS) -> tuple[Passport, ...]:
     """Return the passports of all planks of all shells, by mark."""
-    planks = sorted((plank for shell in gridshell.shells for plank in shell.planks), key=lambda plank: plank.mark)
     return tuple(
-        passport(plank, gridshell.timber, gridshell.name, service_life_years=service_life_years) for plank in planks
+        passport(plank, gridshell.timber, gridshell.name, service_life_years=service_life_years)
+        for plank in sorted_planks(gridshell)
     )
 
 

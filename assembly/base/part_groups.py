@@ -9,7 +9,8 @@ import numpy as np
 
 from aag_cad.families import EDGES
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Joint, JointKind, Part, Shell
+from aag_cad.parts.kinds import Place, kind_of, parts_at
+from aag_cad.parts.model import Joint, JointKind, Shell, shell_parts
 from assembly.base.errors import PlanError
 
 Group: TypeAlias = Literal["beams", "studs", "edges", "outside", "inside", "feet", "standing", "cover"]
@@ -25,8 +26,8 @@ class Kit:
 
     ``beams``: planks, blocks and block bolts by beam. ``studs``: bolts by stud. ``edges``: screws, straps and the bolts
     of straps by edge plank. ``outside`` and ``inside``: screws by geodesic, by the side that they are driven from.
-    ``feet``: footings, threaded rods and shoes. ``standing``: bolts of the shoes. ``cover``: blocks on geodesics,
-    mullions, strips, clamping bars and the screws of all these.
+    ``feet``: what stands on the ground, as footings, threaded rods and shoes. ``standing``: bolts of the shoes.
+    ``cover``: blocks on geodesics, mullions, strips, clamping bars and the screws of all these.
     """
 
     beams: dict[str, tuple[str, ...]]
@@ -60,7 +61,10 @@ def driven_from_outside(shell: Shell) -> set[str]:
 
 
 def _homes(shell: Shell, block_beam: dict[str, str]) -> dict[tuple[Group, str], list[str]]:
-    """Return the fasteners by what they are added with: a group of the kit and the mark of a piece in it."""
+    """Return the fasteners by what they are added with: a group of the kit and the mark of a piece in it.
+
+    Steel that connects, but for studs and blocks, goes with the fasteners of the first joint that names it.
+    """
     index, outer = index_of(shell), driven_from_outside(shell)
 
     def home(joint: Joint, fastener: str) -> tuple[Group, str] | None:
@@ -78,17 +82,20 @@ def _homes(shell: Shell, block_beam: dict[str, str]) -> dict[tuple[Group, str], 
         family, mark = flat[0]
         return ("edges" if family in EDGES else "outside" if fastener in outer else "inside"), mark
 
+    fittings = {part.mark for part in parts_at(shell_parts(shell), "shell") if kind_of(part).role == "connector"}
+    fittings -= index.studs.keys() | index.blocks.keys()
     homes: dict[tuple[Group, str], list[str]] = defaultdict(list)
     for joint in shell.joints:
-        for fastener in (*(mark for mark in joint.members if mark in index.straps), *joint.fasteners):
-            found = home(joint, fastener)
+        for mark in (*(member for member in joint.members if member in fittings), *joint.fasteners):
+            found = home(joint, mark)
             if found is not None:
-                homes[found].append(fastener)
+                homes[found].append(mark)
+        fittings.difference_update(joint.members)
     return homes
 
 
-def _marks(parts: Iterable[Part]) -> tuple[str, ...]:
-    return tuple(part.mark for part in parts)
+def _placed(shell: Shell, place: Place) -> tuple[str, ...]:
+    return tuple(part.mark for part in parts_at(shell_parts(shell), place))
 
 
 def shell_kit(shell: Shell) -> Kit:
@@ -115,13 +122,11 @@ def shell_kit(shell: Shell) -> Kit:
         lower_edges=tuple(mark for mark in edges if mark in footed),
         outside=group("outside", flat),
         inside=group("inside", flat),
-        feet=(*_marks(shell.footings), *homes.get(("feet", ""), ()), *_marks(shell.shoes)),
+        feet=tuple(dict.fromkeys((*_placed(shell, "ground"), *homes.get(("feet", ""), ())))),
         standing=tuple(homes.get(("standing", ""), ())),
         cover=(
             *(mark for mark in blocks[""] if mark in covering),
-            *_marks(shell.mullions),
-            *_marks(shell.strips),
-            *_marks(shell.clamps),
+            *_placed(shell, "cover"),
             *homes.get(("cover", ""), ()),
         ),
     )

@@ -9,9 +9,10 @@ import numpy as np
 
 from aag_cad.language import Language, figure, say, says, words_table
 from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import is_driven, kind_of
 from aag_cad.parts.marks import joint_of, parse_mark, shell_of, short_mark, whole_of
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Bolt, Gridshell, Part, Plank, Rod, Screw, Shell, all_parts, shell_parts
+from aag_cad.parts.model import Gridshell, Part, Plank, Shell, all_parts, shell_parts
 from assembly.base.mark_ranges import joined_ranges, mark_ranges
 from assembly.base.names import part_name, phase_name
 from assembly.base.part_groups import driven_from_outside
@@ -52,14 +53,14 @@ def part_rows(
     groups: dict[str, list[str]] = defaultdict(list)
     for mark in marks:
         name = part_name(parts[mark], language)
-        if isinstance(parts[mark], Screw):
+        if is_driven(parts[mark]):
             name = say(language, f"cards.where.{'outside' if mark in outer else 'inside'}", name=name)
         groups[name].append(mark)
     rows = []
     for name, listed in groups.items():
         joints = tuple(dict.fromkeys(joint_of(mark) for mark in listed))
         each, left = divmod(len(listed), len(joints))
-        if not isinstance(parts[listed[0]], Bolt | Screw | Rod):
+        if kind_of(parts[listed[0]]).role != "fastener":
             where = joined_ranges(listed)
         elif each > 1 and not left:
             where = say(language, "cards.where.each", joints=joined_ranges(joints), count=each)

@@ -19,7 +19,7 @@ from assembly.booklet.step_words import step_title
 from assembly.booklet.words import booklet_words, finding_lines
 from assembly.drawing.joint_sections import block_section_svg, node_section_svg
 from assembly.drawing.perspective import perspective_svg
-from assembly.pictures.backgrounds import Backgrounds, backgrounds_of, shell_twins
+from assembly.pictures.backgrounds import Backgrounds, backgrounds_of
 from assembly.pictures.scenes import home_shell, legend_svgs, phase_svg, picture_key, step_pictures
 from assembly.pictures.site_scenes import key_svg
 from assembly.plan.piece_weights import piece_weights, segment_weights
@@ -151,7 +151,7 @@ def common_of(gridshell: Gridshell, language: Language) -> Common:
     swatches = {f"legend-{name}": picture for name, picture in legend_svgs().items()}
     keys = {f"key-{shell.mark}": key_svg(gridshell, shell.mark) for shell in gridshell.shells}
     pictures = {"vault": perspective_svg(gridshell)} | swatches | keys
-    maps, drawn = map_pages(gridshell, shell_twins(gridshell), language)
+    maps, drawn = map_pages(gridshell, language)
     return Common(gridshell, piece_weights(gridshell), pictures | drawn, maps, language)
 
 
@@ -216,8 +216,8 @@ def sequence_booklet(planned: Planned, common: Common) -> Booklet:
     data, pictures = dict(booklet.data), dict(booklet.pictures)
     for more, drawn in (
         _how(words, plan, backgrounds, cards),
-        laying_pages(gridshell, planned, backgrounds.twins, common.language),
-        locking_pages(planned.locking, backgrounds.twins, common.language),
+        laying_pages(gridshell, planned, common.language),
+        locking_pages(gridshell, planned.locking, common.language),
         segment_pages(gridshell, planned.segmentation, common.language),
     ):
         data |= more

@@ -1,10 +1,11 @@
 """Pages of the booklet that are no cards: maps of the marks, laying plans, locking, segments."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from aag_cad.language import Language, figure, say
-from aag_cad.parts.model import Gridshell, Shell
+from aag_cad.parts.index import index_of
+from aag_cad.parts.model import Gridshell
 from assembly.base.locking_order import LockingOrder
 from assembly.base.mark_ranges import joined_ranges
 from assembly.base.segments import Segmentation
@@ -24,23 +25,19 @@ _MAP_SIZES = ((2000.0, 1660.0), MAP_SIZE)
 Made = tuple[dict[str, Any], dict[str, str]]
 
 
-def alike(twins: Mapping[str, str]) -> dict[str, str]:
-    """Return for each first shell the names of all that are alike but for their number, as one text."""
+def _twins(gridshell: Gridshell) -> dict[str, str]:
+    """Return for each first shell of twins the names of all of them, as one text."""
     groups: dict[str, list[str]] = {}
-    for shell, first in twins.items():
+    for shell, first in index_of(gridshell).twins.items():
         groups.setdefault(first, []).append(shell)
     return {first: ", ".join(shells) for first, shells in groups.items()}
 
 
-def _firsts(gridshell: Gridshell, twins: Mapping[str, str]) -> Iterator[tuple[Shell, str]]:
-    names = alike(twins)
-    yield from ((shell, names[shell.mark]) for shell in gridshell.shells if shell.mark in names)
-
-
-def map_pages(gridshell: Gridshell, twins: Mapping[str, str], language: Language) -> Made:
+def map_pages(gridshell: Gridshell, language: Language) -> Made:
     """Return the maps of the marks of each kind of shell, the first with the legend of the layers."""
     pages, pictures = [], dict[str, str]()
-    for shell, names in _firsts(gridshell, twins):
+    for mark, names in _twins(gridshell).items():
+        shell = index_of(gridshell).shells[mark]
         for i, families in enumerate(_MAPS):
             picture, legend = f"map-{shell.mark}-{i}", f"layers-{shell.mark}" if i == 0 else ""
             pictures[picture] = label_map_svg(shell, families, language, _MAP_SIZES[i])
@@ -55,10 +52,11 @@ def map_pages(gridshell: Gridshell, twins: Mapping[str, str], language: Language
     return {"maps": pages}, pictures
 
 
-def laying_pages(gridshell: Gridshell, planned: Planned, twins: Mapping[str, str], language: Language) -> Made:
+def laying_pages(gridshell: Gridshell, planned: Planned, language: Language) -> Made:
     """Return the flat laying plans with their coordinates, of members and of single points; and their pictures."""
     pages, pictures = [], dict[str, str]()
-    for shell, names in _firsts(gridshell, twins):
+    for mark, names in _twins(gridshell).items():
+        shell = index_of(gridshell).shells[mark]
         if shell.mark not in planned.flat:
             continue
         state, order = planned.flat[shell.mark], planned.orders[shell.mark]
@@ -75,9 +73,9 @@ def laying_pages(gridshell: Gridshell, planned: Planned, twins: Mapping[str, str
     return {"layings": pages}, pictures
 
 
-def locking_pages(orders: Sequence[LockingOrder], twins: Mapping[str, str], language: Language) -> Made:
+def locking_pages(gridshell: Gridshell, orders: Sequence[LockingOrder], language: Language) -> Made:
     """Return the locking order of each kind of shell as table and plot."""
-    names, pages, pictures = alike(twins), [], dict[str, str]()
+    names, pages, pictures = _twins(gridshell), [], dict[str, str]()
     for order in (order for order in orders if order.shell in names):
         pictures[f"locking-{order.shell}"] = locking_svg(order, language)
         price = figure(f"{100.0 * order.rule_price:.1f}", language)

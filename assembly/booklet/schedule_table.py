@@ -2,7 +2,6 @@
 
 from math import ceil
 
-from aag_cad.files import csv_text
 from aag_cad.language import Language
 from assembly.base.steps import Plan
 from assembly.booklet.step_words import step_title
@@ -26,8 +25,3 @@ def schedule_rows(plan: Plan, schedule: Schedule, language: Language = "en") -> 
         told = (step.number, step.id, step.phase, step.shell, step_title(step, language), *figures, first, last)
         rows.append((*map(str, told), str(when.slack), "yes" if when.critical else "no", after))
     return rows
-
-
-def schedule_csv(plan: Plan, schedule: Schedule, language: Language = "en") -> str:
-    """Return the schedule as CSV: one header line, LF, steps in their order, times in minutes of work."""
-    return csv_text(SCHEDULE_HEADER, schedule_rows(plan, schedule, language))

@@ -5,8 +5,9 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from aag_cad.families import EDGES
 from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import kind_of, parts_at
 from aag_cad.parts.marks import shells_of
-from aag_cad.parts.model import Footing, Gridshell, Part, Rod, Shell, Shoe, ridge_parts, shell_parts
+from aag_cad.parts.model import Gridshell, Part, Shell, ridge_parts, shell_parts
 from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Segmentation
 from assembly.base.steps import Plan, Step
@@ -81,8 +82,7 @@ def _covering(shell: Shell) -> set[str]:
     blocks = index_of(shell).blocks.keys()
     held = {mark for joint in joints for mark in joint.fasteners}
     held |= {joint.mark for joint in joints if joint.mark in blocks}
-    pieces: tuple[Part, ...] = (*shell.mullions, *shell.strips, *shell.clamps)
-    return held | {part.mark for part in pieces}
+    return held | {part.mark for part in parts_at(shell_parts(shell), "cover")}
 
 
 def _orders(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]]) -> Iterator[tuple[str, Step, Step]]:
@@ -125,7 +125,7 @@ def _orders(plan: Plan, shell: Shell, places: dict[str, tuple[Step, int]]) -> It
             yield from (
                 (f"{part.mark} bolts a shoe to the shell", stand, at[part.mark]) for stand in _own(stands, at, part)
             )
-        elif isinstance(part, Footing | Rod | Shoe):
+        elif kind_of(part).place == "ground":
             yield from ((f"{part.mark} carries the shell", at[part.mark], stand) for stand in stands)
         else:
             yield from ((f"{part.mark} is part of the stiff shell", at[part.mark], then) for then in divides or stands)

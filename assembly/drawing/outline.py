@@ -2,12 +2,14 @@
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from aag_cad.geometry.surface import unit
+from aag_cad.parts.kinds import Kind, Place, kind_of, parts_at
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Blade, Gridshell, Joint, Part, Shell, shell_parts
+from aag_cad.parts.model import Gridshell, Joint, Part, Shell, ridge_parts, shell_parts
 from aag_cad.units import Floats, Vector
 from assembly.base.shell_axes import View, elevation_view, shell_view, vault_view
 from assembly.drawing.part_outlines import Flat, piece_outline
@@ -17,7 +19,8 @@ from assembly.drawing.part_outlines import Flat, piece_outline
 class Outline:
     """What is drawn of some shells, in units of the sheet: outlines and lines (n, 2), points (2,).
 
-    ``planks`` run from the lowest layer to the highest, ``pieces`` are the other parts that are drawn; ``lines`` are
+    ``planks`` run from the lowest layer to the highest, ``pieces`` are the other parts that are drawn, ``kinds`` the
+    rows of these; ``lines`` are
     centre lines of planks, beams and pieces from their start, ``points`` those of the joints. ``scale`` is sheet units
     a mm, ``origin`` the place of the coordinates' origin.
     """
@@ -30,6 +33,7 @@ class Outline:
     lines: dict[str, Floats]
     points: dict[str, Floats]
     pieces: dict[str, Floats]
+    kinds: dict[str, Kind[Any, Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +46,9 @@ class _Group:
     joints: tuple[Joint, ...]
 
 
-def _group(shell: Shell, matrix: Floats, drawn: tuple[type[Part], ...]) -> _Group:
+def _group(shell: Shell, matrix: Floats, drawn: tuple[Place, ...]) -> _Group:
     planks = sorted(shell.planks, key=lambda plank: (plank.layer, plank.mark))
-    pieces = sorted((p for p in shell_parts(shell) if isinstance(p, drawn)), key=lambda p: drawn.index(type(p)))
+    pieces = [part for part in parts_at(shell_parts(shell), *drawn) if kind_of(part).outlined]
     return _Group(shell, matrix, (*planks, *pieces), shell.joints)
 
 
@@ -89,11 +93,12 @@ def _outline(
         lines=lines,
         points={mark: (point - low) * scale + margin for mark, point in joints.items()},
         pieces={mark: outline for mark, (outline, _) in drawn.items() if mark not in layers},
+        kinds={part.mark: kind_of(part) for group in groups for part in group.parts if part.mark not in layers},
     )
 
 
-def shell_outline(shell: Shell, width: float, margin: float, drawn: tuple[type[Part], ...] = ()) -> Outline:
-    """Return a shell square on from outside, its foot at the bottom; ``drawn`` are kinds of pieces besides planks."""
+def shell_outline(shell: Shell, width: float, margin: float, drawn: tuple[Place, ...] = ()) -> Outline:
+    """Return a shell square on from outside, its foot at the bottom; ``drawn`` are places of pieces besides planks."""
     return _outline([_group(shell, np.eye(4), drawn)], shell_view(shell), width, margin)
 
 
@@ -102,14 +107,14 @@ def elevation_outline(shell: Shell, width: float, margin: float) -> Outline:
     return _outline([_group(shell, np.eye(4), ())], elevation_view(shell), width, margin)
 
 
-def _placed(gridshell: Gridshell, drawn: tuple[type[Part], ...]) -> list[_Group]:
+def _placed(gridshell: Gridshell, drawn: tuple[Place, ...]) -> list[_Group]:
     placed = [_group(shell, frame_matrix(shell.placement), drawn) for shell in gridshell.shells]
-    blades = gridshell.blades if Blade in drawn else ()
-    return [*placed, _Group(None, np.eye(4), blades, gridshell.joints)]
+    pieces = tuple(part for part in parts_at(ridge_parts(gridshell), *drawn) if kind_of(part).outlined)
+    return [*placed, _Group(None, np.eye(4), pieces, gridshell.joints)]
 
 
-def vault_outline(gridshell: Gridshell, width: float, margin: float, drawn: tuple[type[Part], ...] = ()) -> Outline:
-    """Return all shells in plan, the centre on the sheet; ``drawn`` are kinds of pieces besides planks."""
+def vault_outline(gridshell: Gridshell, width: float, margin: float, drawn: tuple[Place, ...] = ()) -> Outline:
+    """Return all shells in plan, the centre on the sheet; ``drawn`` are the places of pieces besides planks."""
     return _outline(_placed(gridshell, drawn), vault_view(), width, margin, around=((0.0, 0.0, 0.0),))
 
 
@@ -128,4 +133,4 @@ def ridge_outline(gridshell: Gridshell, pair: Sequence[str], width: float, margi
     along = unit((side - crown) * [1.0, 1.0, 0.0])
     up = np.array([0.0, 0.0, 1.0])
     view = View(np.array([along, np.cross(up, along), up]))
-    return _outline(_placed(gridshell, (Blade,)), view, width, margin, only=pair)
+    return _outline(_placed(gridshell, ("ridge",)), view, width, margin, only=pair)

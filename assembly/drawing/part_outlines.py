@@ -6,10 +6,11 @@ from typing import TypeAlias
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from aag_cad.parts.forming import formed_points
+from aag_cad.parts.kinds import shaped
 from aag_cad.parts.mesh import shell_mesh
-from aag_cad.parts.model import ClampingBar, FlatBar, Mullion, Part, Plank, Strap, Strip
-from aag_cad.parts.shapes.sheet import ruling_spans, sheet_of
+from aag_cad.parts.model import FlatBar, Part, Strip
+from aag_cad.parts.shapes.bar import BAR, bar_rings
+from aag_cad.parts.shapes.sheet import SHEET, ruling_spans, sheet_of
 from aag_cad.units import Floats
 
 Flat: TypeAlias = Callable[[Floats], Floats]
@@ -21,12 +22,7 @@ _RULINGS = 25
 
 def plank_rings(plank: FlatBar, spacing: float = _SPACING) -> Floats:
     """Return the four corners of a formed plank or bar at even stations, (k, 4, 3), in the coordinates of its shell."""
-    section, length = plank.blank.section, plank.blank.length
-    count = max(_LEAST_RINGS, int(length / spacing) + 2)
-    y, z = section.width / 2.0, section.thickness / 2.0
-    corners = np.array([(-y, -z), (y, -z), (y, z), (-y, z)])
-    stations = np.repeat(np.linspace(0.0, length, count), 4)
-    return formed_points(plank, np.column_stack([stations, np.tile(corners, (count, 1))])).reshape(count, 4, 3)
+    return bar_rings(plank, max(_LEAST_RINGS, int(plank.blank.length / spacing) + 2))
 
 
 def silhouette(rings: Floats) -> tuple[Floats, Floats]:
@@ -58,14 +54,13 @@ def piece_outline(part: Part, flat: Flat) -> tuple[Floats, Floats]:
 
     What is folded or round is drawn as the convex hull of its mesh, its middle line is a point.
     """
-    match part:
-        case Plank() | Strap() | Mullion() | ClampingBar():
-            rings = plank_rings(part)
-            return silhouette(flat(rings.reshape(-1, 3)).reshape(len(rings), 4, 2))
-        case Strip():
-            corners = _strip_corners(part)
-            left, right = flat(corners[:, 0]), flat(corners[:, 1])
-            return np.concatenate([left, right[::-1]]), (left + right) / 2.0
-        case _:
-            points = flat(shell_mesh(part).vertices)
-            return _hull(points), points.mean(axis=0)[None]
+    shape, form = shaped(part)
+    if shape is BAR:
+        rings = plank_rings(form)
+        return silhouette(flat(rings.reshape(-1, 3)).reshape(len(rings), 4, 2))
+    if shape is SHEET:
+        corners = _strip_corners(form)
+        left, right = flat(corners[:, 0]), flat(corners[:, 1])
+        return np.concatenate([left, right[::-1]]), (left + right) / 2.0
+    points = flat(shell_mesh(part).vertices)
+    return _hull(points), points.mean(axis=0)[None]

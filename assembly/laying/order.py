@@ -14,6 +14,7 @@ import numpy as np
 
 from aag_cad.families import EDGES
 from aag_cad.parts.model import Gridshell, Shell, Stud
+from aag_cad.parts.twins import made_for_each
 from aag_cad.units import Floats, Vector
 from assembly.base.errors import PlanError
 from assembly.base.shell_axes import best_plane, shell_view, sweep_direction
@@ -225,7 +226,7 @@ def flat_orders(gridshell: Gridshell) -> dict[str, FlatOrder]:
     PlanError that names every circle of members of which none can be slid in.
     """
     woven = interlacing(assembly_graph(gridshell))
-    return {shell.mark: flat_order(shell, woven) for shell in gridshell.shells}
+    return made_for_each(gridshell, lambda shell: flat_order(shell, woven))
 
 
 def _places(graph: "nx.MultiGraph[str]", studs: Sequence[str], units: Mapping[str, Unit]) -> dict[str, Vector]:

@@ -6,12 +6,11 @@ docs/locking.md.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from itertools import chain
 from typing import TypeAlias
 
-from aag_cad.parts.marks import in_other_shell, short_mark
 from aag_cad.parts.model import Gridshell, Shell, Timber
+from aag_cad.parts.twins import made_for_each
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
 from assembly.base.locking_order import Group, LockingOrder, LockingStep
@@ -150,49 +149,12 @@ def locking_order(
     )
 
 
-def _alike(one: Shell, other: Shell) -> bool:
-    """Return whether two shells have the same planks and joints but for the shell's number in their marks."""
-
-    def marks(shell: Shell) -> list[str]:
-        return [short_mark(plank.mark) for plank in shell.planks] + [short_mark(joint.mark) for joint in shell.joints]
-
-    return (
-        marks(one) == marks(other)
-        and all(a.blank.section == b.blank.section for a, b in zip(one.planks, other.planks, strict=True))
-        and all(a.curve == b.curve for a, b in zip(one.planks, other.planks, strict=True))
-        and all(a.normal == b.normal for a, b in zip(one.joints, other.joints, strict=True))
-    )
-
-
-def _renumbered(order: LockingOrder, shell: str) -> LockingOrder:
-    """Return the order for another shell: the same with that shell's number in all marks."""
-
-    def moved(marks: Sequence[str]) -> Group:
-        return tuple(in_other_shell(mark, order.shell, shell) for mark in marks)
-
-    def at_other(step: LockingStep) -> LockingStep:
-        props = tuple(replace(prop, joint=moved([prop.joint])[0]) for prop in step.props)
-        return replace(step, marks=moved(step.marks), at=moved([step.at])[0], props=props)
-
-    return replace(
-        order,
-        shell=shell,
-        feet=moved(order.feet),
-        hoists=moved(order.hoists),
-        steps=tuple(at_other(step) for step in order.steps),
-        released=at_other(order.released),
-    )
-
-
 def locking_orders(
     gridshell: Gridshell, *, edges_first: bool = True, pairs: bool = True, soft: float = SOFT, limit: float = SAG_LIMIT
 ) -> tuple[LockingOrder, ...]:
-    """Return the locking order of every shell; shells alike are worked out once. See ``locking_order``."""
-    found: list[tuple[Shell, LockingOrder]] = []
-    for shell in gridshell.shells:
-        twin = next((order for other, order in found if _alike(other, shell)), None)
-        order = twin or locking_order(
-            shell, gridshell.timber, edges_first=edges_first, pairs=pairs, soft=soft, limit=limit
-        )
-        found.append((shell, _renumbered(order, shell.mark)))
-    return tuple(order for _, order in found)
+    """Return the locking order of every shell; twins are worked out once. See ``locking_order``."""
+
+    def order_of(shell: Shell) -> LockingOrder:
+        return locking_order(shell, gridshell.timber, edges_first=edges_first, pairs=pairs, soft=soft, limit=limit)
+
+    return tuple(made_for_each(gridshell, order_of).values())

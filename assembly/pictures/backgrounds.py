@@ -8,20 +8,9 @@ import numpy as np
 from aag_cad.language import Language
 from aag_cad.once import once
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import in_other_shell, short_mark
+from aag_cad.parts.marks import in_other_shell
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import (
-    ClampingBar,
-    Footing,
-    Gridshell,
-    Mullion,
-    Rod,
-    Shell,
-    Shoe,
-    Strap,
-    Strip,
-    shell_parts,
-)
+from aag_cad.parts.model import Gridshell
 from aag_cad.units import Floats
 from assembly.base.part_groups import shell_kit
 from assembly.base.phases import is_down
@@ -35,15 +24,13 @@ from assembly.plan.site_work import ridge_pairs
 PAGE_WIDTH = 1800.0
 SMALL_WIDTH = 880.0
 MARGIN = 50.0
-ON_SHELLS = (Strap, Mullion, Strip, ClampingBar)
-ON_GROUND = (Footing, Rod, Shoe)
 
 
 @dataclass(frozen=True, eq=False)
 class Outlines:
     """What the pictures of a gridshell are drawn on: its kinds of shells on a page and smaller, its plan, its ridges.
 
-    ``large`` and ``small`` are of the first shell of those that are alike; ``ridges`` go by the shells on either side.
+    ``large`` and ``small`` are of the first shell of twins; ``ridges`` go by the shells on either side.
     """
 
     large: dict[str, Outline]
@@ -56,13 +43,11 @@ class Outlines:
 class Backgrounds:
     """The outlines that the pictures of a gridshell are drawn from, and what is in place before each step.
 
-    ``twins`` gives for each shell the first one that is alike but for its number. ``standing`` are the planks of the
-    whole shells, ``stood`` the segments of cut ones, that stand on the site before each step; ``slides`` say how planks
-    are slid in, by mark.
+    ``standing`` are the planks of the whole shells, ``stood`` the segments of cut ones, that stand on the site before
+    each step; ``slides`` say how planks are slid in, by mark.
     """
 
     gridshell: Gridshell
-    twins: dict[str, str]
     outlines: Outlines
     before: dict[str, frozenset[str]]
     standing: dict[str, frozenset[str]]
@@ -70,30 +55,6 @@ class Backgrounds:
     segmentation: Segmentation | None
     slides: Mapping[str, Slide]
     language: Language
-
-
-def _alike(one: Shell, other: Shell) -> bool:
-    """Return whether two shells have the same parts at the same places but for the shell's number in their marks."""
-    ours, theirs = shell_parts(one), shell_parts(other)
-    planks = zip(one.planks, other.planks, strict=False)
-    return (
-        [short_mark(part.mark) for part in ours] == [short_mark(part.mark) for part in theirs]
-        and all(a.curve == b.curve and a.blank.section == b.blank.section for a, b in planks)
-        and [short_mark(joint.mark) for joint in one.joints] == [short_mark(joint.mark) for joint in other.joints]
-        and bool(np.array_equal([j.point for j in one.joints], [j.point for j in other.joints]))
-    )
-
-
-def shell_twins(gridshell: Gridshell) -> dict[str, str]:
-    """Return for the mark of each shell that of the first shell which is alike but for its number."""
-    firsts: list[Shell] = []
-    twins: dict[str, str] = {}
-    for shell in gridshell.shells:
-        first = next((other for other in firsts if _alike(other, shell)), shell)
-        if first is shell:
-            firsts.append(shell)
-        twins[shell.mark] = first.mark
-    return twins
 
 
 def twin_step(step: Step, shell: str, twin: str) -> Step:
@@ -166,13 +127,13 @@ def ridge_planks(gridshell: Gridshell, pair: Sequence[str]) -> tuple[str, ...]:
 @once
 def outlines_of(gridshell: Gridshell) -> Outlines:
     """Return the outlines of a gridshell: they take a second, and all booklets draw on them."""
-    twins = shell_twins(gridshell)
-    firsts = [shell for shell in gridshell.shells if twins[shell.mark] == shell.mark]
+    shells = index_of(gridshell).shells
+    firsts = [shells[mark] for mark in dict.fromkeys(index_of(gridshell).twins.values())]
     facing = {pair: ridge_planks(gridshell, pair) for pair in ridge_pairs(gridshell)}
     return Outlines(
-        large={shell.mark: shell_outline(shell, PAGE_WIDTH, MARGIN, ON_SHELLS) for shell in firsts},
+        large={shell.mark: shell_outline(shell, PAGE_WIDTH, MARGIN, ("shell", "cover")) for shell in firsts},
         small={shell.mark: shell_outline(shell, SMALL_WIDTH, MARGIN) for shell in firsts},
-        plan=vault_outline(gridshell, PAGE_WIDTH * 0.8, MARGIN, ON_GROUND),
+        plan=vault_outline(gridshell, PAGE_WIDTH * 0.8, MARGIN, ("ground",)),
         ridges={
             pair: ridge_outline(gridshell, planks, PAGE_WIDTH, MARGIN) for pair, planks in facing.items() if planks
         },
@@ -193,7 +154,6 @@ def backgrounds_of(
     down = any(is_down(step.phase) for step in plan.steps)
     return Backgrounds(
         gridshell=gridshell,
-        twins=shell_twins(gridshell),
         outlines=outlines_of(gridshell),
         before=_still_there(plan, gridshell) if down else _in_place(plan, gridshell),
         standing=_standing(plan, gridshell, down),

@@ -21,7 +21,7 @@ from assembly.pictures.down_scenes import down_pictures
 from assembly.pictures.named_marks import middle_of, numbers_of
 from assembly.pictures.segment_scenes import cut_outline, moved_segments, segment_scene
 from assembly.pictures.site_scenes import elevation_svg, foot_sections, ridge_pictures, site_svg
-from assembly.pictures.step_pictures import NEW, PIECES, STEEL, THERE, Scene, prop_items, scene_svg
+from assembly.pictures.step_pictures import NEW, PIECES, THERE, Scene, prop_items, scene_svg
 from assembly.plan.shape_control import control_figures, sling_points
 
 __all__ = [
@@ -136,8 +136,9 @@ def home_shell(step: Step) -> str:
 def _twinned(backgrounds: Backgrounds, step: Step) -> tuple[Shell, Step, frozenset[str]]:
     """Return the shell whose picture serves for a step, the step with its marks, and what is there before it."""
     home = home_shell(step)
-    twin = backgrounds.twins[home]
-    shell = index_of(backgrounds.gridshell).shells[twin]
+    index = index_of(backgrounds.gridshell)
+    twin = index.twins[home]
+    shell = index.shells[twin]
     there = {in_other_shell(mark, home, twin) for mark in backgrounds.before[step.id] if is_in_shell(mark, home)}
     return shell, twin_step(step, home, twin), frozenset(there)
 
@@ -203,6 +204,6 @@ def phase_svg(backgrounds: Backgrounds, plan: Plan, step: Step) -> str:
 def legend_svgs() -> dict[str, str]:
     """Return the swatches of the legend by name."""
     box = np.array([(2.0, 6.0), (88.0, 6.0), (88.0, 34.0), (2.0, 34.0)])
-    styles = {"there": THERE, "steel": STEEL, **NEW, **PIECES}
+    styles = {"there": THERE, **NEW, **PIECES}
     swatches = {name: svg(90.0, 40.0, [group([path(box)], style)]) for name, style in styles.items()}
     return swatches | {"prop": svg(40.0, 40.0, [prop_items([np.array((20.0, 20.0))])])}

@@ -6,13 +6,14 @@ import numpy as np
 
 from aag_cad.language import Language
 from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import parts_at
 from aag_cad.parts.marks import shell_of
 from aag_cad.parts.model import Gridshell, Shell, shell_parts
 from assembly.base.steps import Step
 from assembly.drawing.outline import Outline, elevation_outline, vault_outline
 from assembly.drawing.steel_sections import blade_section_svg, foot_section_svg
 from assembly.drawing.svg import Label, Style, circle, group, label_svg, line, path, svg, text
-from assembly.pictures.backgrounds import MARGIN, ON_GROUND, SMALL_WIDTH, Backgrounds, ridge_planks
+from assembly.pictures.backgrounds import MARGIN, SMALL_WIDTH, Backgrounds, ridge_planks
 from assembly.pictures.named_marks import feet_of, middle_of, numbers_of
 from assembly.pictures.step_pictures import Scene, scene_items
 from assembly.plan.shape_control import control_figures
@@ -26,7 +27,7 @@ def _site_scene(gridshell: Gridshell, step: Step, there: frozenset[str]) -> Scen
     """Return what the plan of the whole shows in a step on site; ``there`` are the planks that stand before it."""
     planks = {shell.mark: [plank.mark for plank in shell.planks] for shell in gridshell.shells}
     feet = {shell.mark: feet_of(shell) for shell in gridshell.shells}
-    grounded = {part.mark for shell in gridshell.shells for part in shell_parts(shell) if isinstance(part, ON_GROUND)}
+    grounded = {part.mark for shell in gridshell.shells for part in parts_at(shell_parts(shell), "ground")}
     moved = [mark for mark in step.assemblies if mark in planks]
     match step.phase:
         case "feet" | "clear feet":

@@ -8,7 +8,7 @@ import numpy as np
 
 from aag_cad.colours import LEGEND
 from aag_cad.families import FAMILIES
-from aag_cad.parts.marks import parse_mark, plank_of, shell_of
+from aag_cad.parts.marks import parse_mark, plank_of
 from aag_cad.units import Floats
 from assembly.drawing.outline import Outline
 from assembly.drawing.svg import (
@@ -32,13 +32,12 @@ LATER = Style("none", "#c4c4c4", 0.8, "5 6")
 NEW: dict[str, Style] = {
     family: Style(row.colour, "#000", 2.0 if row.upright else 2.5) for family, row in FAMILIES.items()
 }
-# Pieces by the family of their mark; blades are R and a pair of shells.
-STEEL = Style(LEGEND["steel"], "#000", 1.5)
+# Pieces by their colour in the legend.
 PIECES = {
-    "C": Style(LEGEND["concrete"], "#000", 2.0),
-    "P": Style(LEGEND["sheet"], "#4b7389", 1.5),
-    "M": Style(LEGEND["aluminium"], "#000", 0.8),
-    "D": Style(LEGEND["aluminium"], "#000", 0.8),
+    "steel": Style(LEGEND["steel"], "#000", 1.5),
+    "concrete": Style(LEGEND["concrete"], "#000", 2.0),
+    "sheet": Style(LEGEND["sheet"], "#4b7389", 1.5),
+    "aluminium": Style(LEGEND["aluminium"], "#000", 0.8),
 }
 FAINT_NEW = Style("#b9b9b9", "#000", 2.5)
 DOT = Style("#000", "#fff", 2.0)
@@ -49,7 +48,6 @@ DOT_LABEL_SIZE = 23.0
 _DOT = 10.0
 _PROP = 12.0
 _BESIDE = 230.0
-_ON_THE_GROUND = ("C", "F")
 
 _SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88)
 
@@ -112,8 +110,8 @@ def prop_items(points: Iterable[Floats]) -> str:
 def _labels(outline: Outline, scene: Scene) -> str:
     """Return the labels of planks (framed) and joints (plain), clear of the dots and of each other."""
     sheet: Box = (0.0, 0.0, outline.width, outline.height)
-    new = ((mark, piece) for mark, piece in outline.pieces.items() if mark in scene.new)
-    fittings = [piece for mark, piece in new if parse_mark(mark).family == "R" or not shell_of(mark)]
+    new = ((outline.kinds[mark], piece) for mark, piece in outline.pieces.items() if mark in scene.new)
+    fittings = [piece for row, piece in new if row.role == "connector" and row.place != "ground"]
     dots = (outline.points[mark].tolist() for mark in (*scene.dots, *scene.rings, *scene.props))
     taken: list[Box] = [(x - _DOT, y - _DOT, x + _DOT, y + _DOT) for x, y in dots]
     taken += [(*piece.min(axis=0).tolist(), *piece.max(axis=0).tolist()) for piece in fittings]
@@ -129,11 +127,11 @@ def _labels(outline: Outline, scene: Scene) -> str:
 def _piece_items(outline: Outline, scene: Scene, beneath: bool) -> Iterable[str]:
     """Yield the pieces of a scene beside its planks: those on the ground, which are ``beneath``, or the others."""
     for mark, points in outline.pieces.items():
-        family = parse_mark(mark).family
-        if (family in _ON_THE_GROUND) != beneath:
+        row = outline.kinds[mark]
+        if (row.place == "ground") != beneath:
             continue
         if mark in scene.new:
-            yield group([path(points)], PIECES.get(family, STEEL))
+            yield group([path(points)], PIECES[row.colour])
         elif mark in scene.there:
             yield group([path(points)], THERE)
 

@@ -10,8 +10,9 @@ import numpy as np
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.language import Figure, Text, text
 from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import is_driven, kind_of
 from aag_cad.parts.marks import is_in_shell, shells_of
-from aag_cad.parts.model import Bolt, Gridshell, Rod, Shell, Strap, Timber
+from aag_cad.parts.model import Gridshell, Shell, Timber
 from aag_cad.units import MM_PER_M
 from assembly.base.lifters import lifters_of
 from assembly.base.mark_ranges import joined_ranges
@@ -73,9 +74,10 @@ class _Down:
     def _card(self, phase: DownPhase, shell: str, marks: tuple[str, ...]) -> Text:
         """Return the key of a card, with the spanners for what leaves and the energy of a hanging shell."""
         index = index_of(self.gridshell)
-        out = [part for mark in marks if isinstance(part := index.parts[mark], Bolt | Rod)]
+        leaving = [index.parts[mark] for mark in marks]
+        out = [part for part in leaving if kind_of(part).role == "fastener" and not is_driven(part)]
         held = index.shells[shell].bolts if shell else ()
-        straps = any(isinstance(index.parts[mark], Strap) for mark in marks)
+        straps = not index.straps.keys().isdisjoint(marks)
         return text(
             f"down.{phase}{' alone' if phase == 'pull edge planks' and not straps else ''}",
             spanners=spanners(out or held),

@@ -11,38 +11,14 @@ from dataclasses import dataclass
 from functools import partial
 
 from aag_cad.design_making import Minutes
-from aag_cad.families import FAMILIES
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import (
-    Blade,
-    Bolt,
-    ClampingBar,
-    CouplingBlock,
-    Footing,
-    Gridshell,
-    JointKind,
-    Mullion,
-    Part,
-    Plank,
-    Rod,
-    Screw,
-    Shell,
-    Shoe,
-    Strap,
-    Strip,
-    Stud,
-)
+from aag_cad.parts.kinds import kind_of, minutes_key
+from aag_cad.parts.model import Gridshell, JointKind, Part, Shell
 from aag_cad.parts.quantities import sizes
 from aag_cad.units import MM_PER_M
 from assembly.base.errors import PlanError
 from assembly.base.phases import PHASE, is_down
 from assembly.base.steps import Plan, Step
-
-_KINDS: dict[type[Part], str] = {
-    Stud: "stud", CouplingBlock: "block", Bolt: "bolt", Screw: "screw", Strap: "strap", Shoe: "shoe", Rod: "rod",
-    Footing: "footing", Mullion: "mullion", Strip: "strip", ClampingBar: "clamp", Blade: "blade",
-}  # fmt: skip
-_LONG = (Plank, Mullion, Strip, ClampingBar)
 
 
 @dataclass(frozen=True)
@@ -78,7 +54,7 @@ def _bolt_counts(shell: Shell) -> dict[JointKind, int]:
 
 def _lengths(gridshell: Gridshell, plan: Plan) -> _Lengths:
     parts = index_of(gridshell).parts
-    long = {mark: sizes(part)[0] for mark, part in parts.items() if isinstance(part, _LONG)}
+    long = {mark: sizes(part)[0] for mark, part in parts.items() if kind_of(part).long}
     beams = {beam.mark: beam.curve.length for shell in gridshell.shells for beam in shell.beams}
     stands = Counter(mark for step in plan.steps if step.phase == "stand" for mark in step.assemblies)
     return _Lengths(parts, long | beams, {shell.mark: _bolt_counts(shell) for shell in gridshell.shells}, stands)
@@ -92,7 +68,7 @@ def _work_with(known: _Lengths, step: Step) -> StepWork:
         part = known.parts.get(mark)
         if part is None:
             raise PlanError(f"{mark}: step {step.id} handles it, but the gridshell has no such part: plan it again")
-        handled[FAMILIES[part.family].minutes if isinstance(part, Plank) else _KINDS[type(part)]] += 1
+        handled[minutes_key(part)] += 1
     beams = [mark for mark in step.assemblies if mark in known.lengths and mark not in known.parts]
     handled["beam"] += len(beams)
     measured = [mark for mark in step.assemblies if mark in known.parts]

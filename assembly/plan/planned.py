@@ -5,7 +5,9 @@ from dataclasses import dataclass, replace
 
 from aag_cad.design_making import Crew, Transport
 from aag_cad.findings import Finding
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Gridshell
+from aag_cad.parts.twins import made_for_each
 from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Limits, Segmentation
 from assembly.base.steps import Plan
@@ -71,13 +73,10 @@ def planned_of(
     locking, found = locking_orders(gridshell, edges_first=edges_first), segments(gridshell, limits)
     orders, size = flat_orders(gridshell), (crew.people, crew.lift_limit)
     plan = plan_of(gridshell, *size, orders=orders, locking=locking, segmentation=found)
-    flat = {shell.mark: flat_state(shell) for shell in gridshell.shells if shell.studs}
-    lying = (
-        finding
-        for shell in gridshell.shells
-        if shell.mark in flat
-        for finding in flat_findings(shell, flat[shell.mark], gridshell.timber)
-    )
+    laid = made_for_each(gridshell, lambda shell: flat_state(shell) if shell.studs else None)
+    flat = {mark: state for mark, state in laid.items() if state is not None}
+    shells = index_of(gridshell).shells
+    lying = (found for mark in flat for found in flat_findings(shells[mark], flat[mark], gridshell.timber))
     plan = replace(plan, findings=(*plan.findings, *lying))
     down = disassembly_of(gridshell, *size, orders=orders, segmentation=found)
     return Planned(plan, scheduled(plan), orders, flat, locking, found, down, scheduled(down))

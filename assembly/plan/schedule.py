@@ -16,19 +16,57 @@ MINUTES_PER_HOUR = 60
 
 
 @dataclass(frozen=True)
-class ScheduledStep:
-    """When a step is done, in minutes of work since the start, and by how many people.
+class Timing:
+    """When a step is done at the earliest and at the latest if people are no limit, in minutes of work from the start.
 
-    ``slack`` is by how many minutes it could be late, with people enough, without a later end of the whole; a step
-    without slack is ``critical``.
+    ``free`` is by how much it may be late without delaying any step after it, ``total`` without delaying the end.
     """
+
+    minutes: int
+    early_start: int
+    late_start: int
+    free: int
+
+    @property
+    def early_finish(self) -> int:
+        """The end of the step if it starts as early as it can."""
+        return self.early_start + self.minutes
+
+    @property
+    def late_finish(self) -> int:
+        """The end of the step if it starts as late as it may."""
+        return self.late_start + self.minutes
+
+    @property
+    def total(self) -> int:
+        """By how much the step may be late without delaying the end."""
+        return self.late_start - self.early_start
+
+    @property
+    def critical(self) -> bool:
+        """Whether the step lies on a longest chain of steps."""
+        return self.total == 0
+
+
+@dataclass(frozen=True)
+class ScheduledStep:
+    """When a step is done, in minutes of work since the start, by how many people; ``timing`` if these are no limit."""
 
     id: str
     start_minute: int
     end_minute: int
     people: int
-    slack: int
-    critical: bool
+    timing: Timing
+
+    @property
+    def slack(self) -> int:
+        """By how many minutes it could be late, with people enough, without a later end of the whole."""
+        return self.timing.total
+
+    @property
+    def critical(self) -> bool:
+        """Whether it has no slack."""
+        return self.timing.critical
 
 
 @dataclass(frozen=True)
@@ -87,20 +125,18 @@ def precedence(plan: Plan, minutes: Mapping[str, int]) -> "nx.DiGraph[str]":
     return graph
 
 
-def _tails(graph: "nx.DiGraph[str]", minutes: Mapping[str, int]) -> dict[str, int]:
-    """Return the longest path from the start of each step to the end of the whole, minutes."""
-    tails: dict[str, int] = {}
-    for step in reversed(list(nx.topological_sort(graph))):
-        tails[step] = minutes[step] + max((tails[after] for after in graph.successors(step)), default=0)
-    return tails
-
-
-def _earliest(graph: "nx.DiGraph[str]", minutes: Mapping[str, int]) -> dict[str, int]:
-    """Return the earliest start of each step if people are no limit, minutes."""
-    starts: dict[str, int] = {}
-    for step in nx.topological_sort(graph):
-        starts[step] = max((starts[before] + minutes[before] for before in graph.predecessors(step)), default=0)
-    return starts
+def timings(graph: "nx.DiGraph[str]", minutes: Mapping[str, int]) -> dict[str, Timing]:
+    """Return when each step of a ``precedence`` can be done if people are no limit, by the critical path method."""
+    order = list(nx.topological_sort(graph))
+    early: dict[str, int] = {}
+    for step in order:
+        early[step] = max((early[before] + minutes[before] for before in graph.predecessors(step)), default=0)
+    end = max((early[step] + minutes[step] for step in order), default=0)
+    late: dict[str, int] = {}
+    for step in reversed(order):
+        late[step] = min((late[after] for after in graph.successors(step)), default=end) - minutes[step]
+    following = {step: min((early[after] for after in graph.successors(step)), default=end) for step in order}
+    return {s: Timing(minutes[s], early[s], late[s], following[s] - early[s] - minutes[s]) for s in order}
 
 
 def critical_path(plan: Plan, minutes: Mapping[str, int]) -> tuple[str, ...]:
@@ -111,13 +147,17 @@ def critical_path(plan: Plan, minutes: Mapping[str, int]) -> tuple[str, ...]:
     return tuple(nx.dag_longest_path(graph, weight="minutes")[:-1]) if plan.steps else ()
 
 
+def _span(found: Mapping[str, Timing]) -> int:
+    return max((timing.early_finish for timing in found.values()), default=0)
+
+
 def lower_bound(plan: Plan, minutes: Mapping[str, int], people: int) -> int:
     """Return minutes that no schedule of a crew can undercut.
 
     The largest of the longest chain, the person-minutes of all steps shared by the crew, and the time of steps of which
     no two go on at once because each needs more than half of the crew (half of the time of those that need just half).
     """
-    chain = max(_tails(precedence(plan, minutes), minutes).values(), default=0)
+    chain = _span(timings(precedence(plan, minutes), minutes))
     shared = sum(step.crew * minutes[step.id] for step in plan.steps)
     alone = sum(minutes[step.id] for step in plan.steps if 2 * step.crew > people)
     halves = sum(minutes[step.id] for step in plan.steps if 2 * step.crew == people)
@@ -148,13 +188,15 @@ def _take(times: list[int], free: list[int], start: int, end: int, people: int) 
         free[i] -= people
 
 
-def _starts(plan: Plan, graph: "nx.DiGraph[str]", minutes: Mapping[str, int], people: int, day: int) -> dict[str, int]:
+def _starts(plan: Plan, graph: "nx.DiGraph[str]", found: Mapping[str, Timing], people: int, day: int) -> dict[str, int]:
     """Return the start of each step by the serial scheme: of the steps that may begin, that with the longest tail.
 
     It starts as early as what it waits for and free people allow; an unbroken step waits for the next morning where it
     would not end on the same day.
     """
-    tails, by_id = _tails(graph, minutes), {step.id: step for step in plan.steps}
+    by_id, span = {step.id: step for step in plan.steps}, _span(found)
+    minutes = {step: timing.minutes for step, timing in found.items()}
+    tails = {step: span - timing.late_start for step, timing in found.items()}
     number = {step.id: i for i, step in enumerate(plan.steps)}
     waiting = {step: degree for step, degree in graph.in_degree() if degree}
     ready = [(-tails[step], number[step], step) for step in graph if step not in waiting]
@@ -194,17 +236,9 @@ def schedule_of(plan: Plan, minutes: Mapping[str, int], people: int, hours_per_d
             "crew, or enlarge crew.people"
         )
     graph = precedence(plan, minutes)
-    starts, earliest, tails = (
-        _starts(plan, graph, minutes, people, day),
-        _earliest(graph, minutes),
-        _tails(graph, minutes),
-    )
-    span = max(tails.values(), default=0)
-    slacks = {step: span - tails[step] - earliest[step] for step in graph}
-    steps = (
-        ScheduledStep(s.id, starts[s.id], starts[s.id] + minutes[s.id], s.crew, slacks[s.id], slacks[s.id] == 0)
-        for s in plan.steps
-    )
+    found = timings(graph, minutes)
+    starts = _starts(plan, graph, found, people, day)
+    steps = (ScheduledStep(s.id, starts[s.id], starts[s.id] + minutes[s.id], s.crew, found[s.id]) for s in plan.steps)
     bound = lower_bound(plan, minutes, people)
     return Schedule(plan.name, people, day, tuple(steps), critical_path(plan, minutes), bound)
 

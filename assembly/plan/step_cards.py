@@ -6,40 +6,45 @@ from typing import TypeAlias
 
 from aag_cad.language import Figure, Text, printed, text
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Bolt, Gridshell, JointKind, Rod, Screw, Shell
+from aag_cad.parts.kinds import is_driven, shaped
+from aag_cad.parts.model import Gridshell, JointKind, Part, Shell
+from aag_cad.parts.shapes.threaded import THREADED, Threaded
 from assembly.base.names import part_text
 from assembly.base.phases import PHASE, Phase
 
-Fastener: TypeAlias = Bolt | Screw | Rod
-Fasteners: TypeAlias = Mapping[JointKind, Sequence[Fastener]]
+Fasteners: TypeAlias = Mapping[JointKind, Sequence[Part]]
 
 _PRE_DRILL = 0.7
 
 
-def spanners(parts: Iterable[object]) -> Figure:
+def _forms(parts: Iterable[Part]) -> list[Threaded]:
+    return [form for shape, form in map(shaped, parts) if shape is THREADED]
+
+
+def spanners(parts: Iterable[Part]) -> Figure:
     """Return the spanners for the bolts and threaded rods among some parts, two of each size."""
-    sizes = sorted({part.across_flats for part in parts if isinstance(part, Bolt | Rod)})
+    sizes = sorted({piece.size for form in _forms(parts) for piece in form.pieces if piece.hexagonal})
     return tuple(text("phases.words.spanner", size=size) for size in sizes) or text("phases.words.spanners")
 
 
-def _drill(parts: Iterable[Fastener]) -> Text:
-    screws = sorted({part.diameter for part in parts if isinstance(part, Screw)})
+def _drill(parts: Iterable[Part]) -> Text:
+    screws = sorted({form.diameter for form in _forms(part for part in parts if is_driven(part))})
     bits = tuple(text("phases.words.bit", size=_PRE_DRILL * diameter) for diameter in screws)
     return text("phases.words.drill", bits=bits or text("phases.words.bits"))
 
 
-def _bolts(parts: Iterable[Fastener]) -> Figure:
-    named = {printed(name, "en"): name for name in (part_text(part) for part in parts if isinstance(part, Bolt))}
+def _bolts(parts: Iterable[Part]) -> Figure:
+    headed = (part for part in parts if any(piece.name == "head" for form in _forms([part]) for piece in form.pieces))
+    named = {printed(name, "en"): name for name in map(part_text, headed)}
     return tuple(named[name] for name in sorted(named)) or text("phases.words.bolts")
 
 
-def fasteners_by_kind(gridshell: Gridshell, shells: Sequence[Shell]) -> dict[JointKind, list[Fastener]]:
-    """Return bolts, screws and threaded rods of some shells and of all ridges by the kind of their joint."""
+def fasteners_by_kind(gridshell: Gridshell, shells: Sequence[Shell]) -> dict[JointKind, list[Part]]:
+    """Return the fasteners of some shells and of all ridges by the kind of their joint."""
     parts = index_of(gridshell).parts
-    found: dict[JointKind, list[Fastener]] = defaultdict(list)
+    found: dict[JointKind, list[Part]] = defaultdict(list)
     for joint in (*(joint for shell in shells for joint in shell.joints), *gridshell.joints):
-        listed = (parts[mark] for mark in joint.fasteners if mark in parts)
-        found[joint.kind] += [part for part in listed if isinstance(part, Bolt | Screw | Rod)]
+        found[joint.kind] += [parts[mark] for mark in joint.fasteners if mark in parts]
     return dict(found)
 
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.index import index_of
+from aag_cad.parts.kinds import is_driven, parts_at
 from aag_cad.parts.mesh import shell_mesh
-from aag_cad.parts.model import Bolt, Joint, Part, Plank, Screw, Shell, Strap, Stud, Timber
+from aag_cad.parts.model import Joint, Part, Plank, Shell, Timber, shell_parts
 from aag_cad.parts.quantities import mass
 from aag_cad.units import Floats
 from assembly.base.segments import PlankPiece, Splice
@@ -56,10 +57,7 @@ class Divisible:
     @cached_property
     def small(self) -> dict[str, Part]:
         """Studs, coupling blocks, bolts, screws and straps by mark."""
-        parts: tuple[Part, ...] = (
-            *self.shell.studs, *self.shell.blocks, *self.shell.bolts, *self.shell.screws, *self.shell.straps,
-        )  # fmt: skip
-        return {part.mark: part for part in parts}
+        return {part.mark: part for part in parts_at(shell_parts(self.shell), "shell") if part.mark not in self.planks}
 
     @cached_property
     def masses(self) -> dict[str, float]:
@@ -83,11 +81,11 @@ class Divisible:
 
     @cached_property
     def small_corners(self) -> dict[str, Floats]:
-        """Corners of studs, bolts and straps; blocks lie in the gaps of beams and screws in the timber."""
+        """Corners of small parts; blocks lie in the gaps of beams and screws in the timber."""
         return {
             mark: shell_mesh(part).vertices
             for mark, part in self.small.items()
-            if isinstance(part, Stud | Bolt | Strap)
+            if mark not in index_of(self.shell).blocks and not is_driven(part)
         }
 
     @cached_property
@@ -196,7 +194,7 @@ def _joint_parts(item: Divisible, spans: dict[str, list[PlankPiece]]) -> Iterato
         if len(held) == len(planks):
             yield from small
         elif joint.kind in ("AG", "boundary") and any(item.planks[mark].beam for mark in held):
-            yield from (mark for mark in small if not isinstance(item.small[mark], Screw))
+            yield from (mark for mark in small if not is_driven(item.small[mark]))
 
 
 def _piece_plank(plank: Plank, piece: PlankPiece, left_out: frozenset[str]) -> Plank:

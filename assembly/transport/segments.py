@@ -10,8 +10,7 @@ from aag_cad.language import Text
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Frame, Gridshell, Shell
-from aag_cad.parts.products import product_key
+from aag_cad.parts.model import Frame, Gridshell
 from aag_cad.units import Floats, vector
 from assembly.base.segments import Limits, Pose, Segment, Segmentation, Splice
 from assembly.transport.cut_pieces import Divisible, Stretch, cut_stops, divisible, stop_splices, stretch_between
@@ -130,11 +129,6 @@ def _segment(
     )
 
 
-def _shape_key(shell: Shell) -> tuple[str, ...]:
-    """Return what shells that are cut alike have in common: equal planks at equal joints."""
-    return (*(product_key(plank) for plank in shell.planks), *(f"{joint.kind}{joint.point}" for joint in shell.joints))
-
-
 def _on_site(item: Divisible, segments: list[Segment], splices: list[Splice]) -> list[str]:
     """Return the fasteners, blocks and straps of a cut shell that belong to no segment, less what splices replace."""
     if len(segments) == 1:
@@ -149,7 +143,7 @@ def segments(gridshell: Gridshell, limits: Limits) -> Segmentation:
 
     Shells are divided along the ridges already; each is cut further along its geodesics if it must be. The choice of
     cuts is exact (``assembly.transport.partition``) for what was found to fit; size is that of the best pose found
-    (``assembly.transport.loading``). Shells of equal shape are searched once. PlanError for a shell without three
+    (``assembly.transport.loading``). Twins are searched once. PlanError for a shell without three
     geodesics.
     """
     made: list[Segment] = []
@@ -157,10 +151,10 @@ def segments(gridshell: Gridshell, limits: Limits) -> Segmentation:
     site: list[str] = []
     changes: list[Finding] = []
     problems: list[Finding] = []
-    known: dict[tuple[str, ...], tuple[tuple[int, ...] | None, Text | None]] = {}
-    poses: dict[tuple[str, ...], list[Pose]] = {}
+    known: dict[str, tuple[tuple[int, ...] | None, Text | None]] = {}
+    poses: dict[str, list[Pose]] = {}
     for shell in gridshell.shells:
-        item, key = divisible(shell, gridshell.timber), _shape_key(shell)
+        item, key = divisible(shell, gridshell.timber), index_of(gridshell).twins[shell.mark]
         if key not in known:
             stops = best_stops(item, limits)
             known[key] = stops, None if stops == () else wish(item, limits)

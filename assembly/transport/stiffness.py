@@ -26,9 +26,8 @@ from aag_cad.mechanics.frame.system import (
     mass_matrix,
     part_stiffness,
 )
-from aag_cad.parts.marks import parse_mark, short_mark
 from aag_cad.parts.model import Gridshell, Shell, Timber
-from aag_cad.parts.products import product_key
+from aag_cad.parts.twins import made_for_each
 from aag_cad.units import Floats, Ints, Vector
 from assembly.base.segments import Segment, Segmentation
 from assembly.locking.model import GRAVITY
@@ -272,54 +271,21 @@ def segment_stiffness(
     return SegmentStiffness(segment.name, holds)
 
 
-def _alike_key(shell: Shell, segment: Segment) -> tuple[object, ...]:
-    """Return what segments have in common that are equally stiff: equal shells, cut, slung, propped, braced alike."""
-    return (
-        tuple(product_key(plank) for plank in shell.planks),
-        tuple((joint.kind, joint.point) for joint in shell.joints),
-        tuple(map(short_mark, segment.geodesics)),
-        tuple((short_mark(piece.plank), piece.start, piece.end) for piece in segment.pieces),
-        tuple(map(short_mark, segment.lifting.studs)),
-        tuple(map(short_mark, segment.props)),
-        tuple((brace.kind, short_mark(brace.start), short_mark(brace.end)) for brace in segment.braces),
-    )
-
-
-def _renamed(stiffness: SegmentStiffness, segment: Segment) -> SegmentStiffness:
-    """Return the stiffness of a segment as that of one which is alike in another shell."""
-    number = parse_mark(segment.shell).shell
-
-    def moved(mark: str) -> str:
-        return str(replace(parse_mark(mark), shell=number))
-
-    def state(one: SegmentState) -> SegmentState:
-        return replace(one, at=moved(one.at))
-
-    holds = tuple(
-        replace(hold, joints=tuple(map(moved, hold.joints)), braced=state(hold.braced), bare=state(hold.bare))
-        for hold in stiffness.holds
-    )
-    return SegmentStiffness(segment.name, holds)
-
-
 def segments_stiffness(gridshell: Gridshell, segmentation: Segmentation) -> tuple[SegmentStiffness, ...]:
-    """Return how stiff the segments of all shells are that are cut; those that are alike are computed once.
+    """Return how stiff the segments of all shells are that are cut; those of twins, cut alike, are computed once.
 
     Errors are those of ``segment_stiffness``.
     """
-    found: list[SegmentStiffness] = []
-    known: dict[tuple[object, ...], SegmentStiffness] = {}
-    lowest: dict[tuple[object, ...], dict[Way, float]] = {}
-    for shell in gridshell.shells:
+    timber = gridshell.timber
+
+    def of_shell(shell: Shell) -> tuple[SegmentStiffness, ...]:
         own = [segment for segment in segmentation.segments if segment.shell == shell.mark]
-        for segment in own if len(own) > 1 else ():
-            key = _alike_key(shell, segment)
-            if key not in known:
-                if key[:2] not in lowest:
-                    lowest[key[:2]] = finished_lowest(shell, gridshell.timber)
-                known[key] = segment_stiffness(shell, gridshell.timber, segmentation, segment, finished=lowest[key[:2]])
-            found.append(_renamed(known[key], segment))
-    return tuple(found)
+        if len(own) < 2:
+            return ()
+        lowest = finished_lowest(shell, timber)
+        return tuple(segment_stiffness(shell, timber, segmentation, segment, finished=lowest) for segment in own)
+
+    return tuple(item for found in made_for_each(gridshell, of_shell).values() for item in found)
 
 
 def stiffness_finding(stiffness: SegmentStiffness, limit: float = SAG_LIMIT) -> Finding | None:

@@ -8,18 +8,19 @@ import ifcopenshell.api.sequence
 import ifcopenshell.util.date
 import networkx as nx
 import pytest
-from test_ifc_sample import sampled, sampled_steps
+from making import a_step
+from test_ifc_sample import planned_work, sampled, sampled_steps
 
 from aag_cad.design import Design
-from aag_cad.errors import DesignError
 from aag_cad.export.ifc.model import ifc_model
 from aag_cad.export.ifc.options import IfcOptions
-from aag_cad.export.ifc.schedule import task_timings
-from aag_cad.export.ifc.tasks import Timing, timings
+from aag_cad.export.ifc.schedule import PlannedWork
 from aag_cad.parts.model import Gridshell, all_parts
+from assembly.base.errors import PlanError
 from assembly.base.steps import Plan, Step
+from assembly.booklet.step_words import step_hold, step_title
 from assembly.plan.clock import Clock
-from assembly.plan.schedule import critical_path
+from assembly.plan.schedule import Timing, critical_path, precedence, timings
 
 FIRST = datetime(2000, 1, 1, 9)
 
@@ -35,18 +36,18 @@ def steps(gridshell: Gridshell, sample: Gridshell) -> tuple[Step, ...]:
 
 
 @pytest.fixture(scope="module")
-def options(design: Design) -> IfcOptions:
-    return IfcOptions(crew=design.crew)
+def work(sample: Gridshell, steps: tuple[Step, ...], design: Design) -> PlannedWork:
+    return planned_work(sample, steps, design.crew)
 
 
 @pytest.fixture(scope="module")
-def ifc(sample: Gridshell, steps: tuple[Step, ...], options: IfcOptions) -> ifcopenshell.file:
-    return ifc_model(sample, steps, options).file
+def ifc(sample: Gridshell, work: PlannedWork) -> ifcopenshell.file:
+    return ifc_model(sample, work).file
 
 
 @pytest.fixture(scope="module")
-def times(sample: Gridshell, steps: tuple[Step, ...], options: IfcOptions) -> Mapping[str, Timing]:
-    return task_timings(sample, steps, options)[0]
+def times(work: PlannedWork) -> Mapping[str, Timing]:
+    return {step.id: step.timing for step in work.schedule.steps}
 
 
 def test_every_step_is_a_task_under_the_schedule_of_a_work_plan(
@@ -57,7 +58,7 @@ def test_every_step_is_a_task_under_the_schedule_of_a_work_plan(
     assert [relation.RelatingContext for relation in plan.HasContext] == [*ifc.by_type("IfcProject")]
     (control,) = schedule.Controls
     assert [(task.Identification, task.Name, task.ObjectType) for task in control.RelatedObjects] == [
-        (step.id, step.title, step.phase) for step in steps
+        (step.id, step_title(step, "en"), step.phase) for step in steps
     ]
 
 
@@ -81,16 +82,15 @@ def test_each_part_is_built_by_one_task_and_each_task_names_what_it_works_on(
     assert worked_on == {step.id: {*step.marks, *step.assemblies} for step in steps if step.marks or step.assemblies}
 
 
-def test_tasks_have_the_times_of_the_schedule(
-    ifc: ifcopenshell.file, sample: Gridshell, steps: tuple[Step, ...], options: IfcOptions
-) -> None:
-    found, schedule = task_timings(sample, steps, options)
-    when = {step.id: step for step in schedule.steps}
+def test_tasks_have_the_times_of_the_schedule(ifc: ifcopenshell.file, work: PlannedWork) -> None:
+    when, clock = {step.id: step for step in work.schedule.steps}, work.clock
     for task in ifc.by_type("IfcTask"):
-        time, timing = task.TaskTime, found[task.Identification]
-        assert time.ScheduleDuration == f"PT{timing.minutes}M"
-        assert time.TotalFloat == f"PT{when[task.Identification].slack}M"
-        assert time.IsCritical == when[task.Identification].critical == timing.critical
+        time, step = task.TaskTime, when[task.Identification]
+        assert time.ScheduleDuration == f"PT{step.end_minute - step.start_minute}M"
+        assert time.ScheduleStart == clock.begins(step.start_minute).isoformat()
+        assert time.ScheduleFinish == clock.ends(step.end_minute).isoformat()
+        assert time.TotalFloat == f"PT{step.slack}M"
+        assert time.IsCritical == step.critical
         assert time.EarlyStart <= time.ScheduleStart < time.ScheduleFinish
         assert datetime.fromisoformat(time.EarlyStart) <= datetime.fromisoformat(time.LateStart)
 
@@ -140,24 +140,24 @@ def test_the_librarys_own_critical_path_agrees_with_ours(ifc: ifcopenshell.file,
 
 def test_floats_of_a_diamond_of_steps_are_those_of_the_textbook() -> None:
     """A 10 min, then b 30 and c 5 side by side, then d 20: c may be 25 min late, and delays nothing before d."""
-    step = Step(1, "", "studs", "", "", (), (), (), 1, (), ())
     chain = (("a", ()), ("b", ("a",)), ("c", ("a",)), ("d", ("b", "c")))
-    plan = Plan("x", tuple(Step(**{**vars(step), "id": ident, "predecessors": before}) for ident, before in chain))
-    found = timings(plan, {"a": 10, "b": 30, "c": 5, "d": 20})
+    plan = Plan("x", tuple(a_step(i, id=name, predecessors=after) for i, (name, after) in enumerate(chain, start=1)))
+    minutes = {"a": 10, "b": 30, "c": 5, "d": 20}
+    found = timings(precedence(plan, minutes), minutes)
     assert {ident: timing.total for ident, timing in found.items()} == {"a": 0, "b": 0, "c": 25, "d": 0}
     assert found["c"].free == 25
     assert (found["d"].early_start, found["d"].early_finish) == (40, 60)
 
 
 def test_work_goes_on_the_next_working_day() -> None:
-    """Eight hours a day from 8 o'clock, Monday to Friday; the work begins on a Saturday, so on Monday the 3rd."""
-    work = Clock(date(2000, 1, 1), 480, 5)
-    assert work.start(0) == "2000-01-03T08:00:00"
-    assert work.finish(480) == "2000-01-03T16:00:00"
-    assert work.start(480) == "2000-01-04T08:00:00"
-    assert work.finish(5 * 480) == "2000-01-07T16:00:00"
-    assert work.start(5 * 480 + 30) == "2000-01-10T08:30:00"
-    assert Clock(date(2000, 1, 5), 480, 7).start(3 * 480) == "2000-01-08T08:00:00"
+    """Eight hours a day from 7 o'clock, Monday to Friday."""
+    work = Clock(date(2000, 1, 3), 480, 5)
+    assert work.begins(0) == datetime(2000, 1, 3, 7)
+    assert work.ends(480) == datetime(2000, 1, 3, 15)
+    assert work.begins(480) == datetime(2000, 1, 4, 7)
+    assert work.ends(5 * 480) == datetime(2000, 1, 7, 15)
+    assert work.begins(5 * 480 + 30) == datetime(2000, 1, 10, 7, 30)
+    assert Clock(date(2000, 1, 5), 480, 7).begins(3 * 480) == datetime(2000, 1, 8, 7)
 
 
 def test_tasks_tell_their_people_and_what_to_check(ifc: ifcopenshell.file, steps: tuple[Step, ...]) -> None:
@@ -169,18 +169,18 @@ def test_tasks_tell_their_people_and_what_to_check(ifc: ifcopenshell.file, steps
         if relation.RelatingPropertyDefinition.Name == "AAG_Step"
     }
     assert {ident: (row["StepNumber"], row["Crew"], row.get("Hold", "")) for ident, row in told.items()} == {
-        step.id: (step.number, step.crew, step.hold) for step in steps
+        step.id: (step.number, step.crew, step_hold(step, "en")) for step in steps
     }
 
 
-def test_a_first_day_that_is_no_date_is_named(sample: Gridshell, steps: tuple[Step, ...], design: Design) -> None:
-    crew = design.crew.model_copy(update={"start": "next spring"})
-    with pytest.raises(DesignError, match=r"crew\.start: 'next spring' is not a date"):
-        ifc_model(sample, steps, IfcOptions(crew=crew))
+def test_a_first_day_without_work_is_named(sample: Gridshell, steps: tuple[Step, ...], design: Design) -> None:
+    crew = design.crew.model_copy(update={"start": "2027-03-06"})
+    with pytest.raises(PlanError, match=r"crew\.start: 2027-03-06 is a Saturday"):
+        ifc_model(sample, planned_work(sample, steps, crew))
 
 
-def test_a_file_without_steps_and_one_of_ifc2x3_have_no_schedule(sample: Gridshell, steps: tuple[Step, ...]) -> None:
-    for model in (ifc_model(sample), ifc_model(sample, steps, IfcOptions(schema="IFC2X3"))):
+def test_a_file_without_steps_and_one_of_ifc2x3_have_no_schedule(sample: Gridshell, work: PlannedWork) -> None:
+    for model in (ifc_model(sample), ifc_model(sample, work, IfcOptions(schema="IFC2X3"))):
         assert not model.file.by_type("IfcWorkSchedule")
         assert not model.file.by_type("IfcTask")
 

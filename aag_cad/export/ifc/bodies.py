@@ -37,13 +37,13 @@ def welded(mesh: Mesh) -> Mesh:
 
 def face_set(model: IfcModel, mesh: Mesh) -> Entity:
     """Return a closed mesh as a triangulated face set."""
-    points = model.file.create_entity("IfcCartesianPointList3D", _coordinates(mesh.vertices))
-    return model.file.create_entity("IfcTriangulatedFaceSet", points, None, True, (mesh.faces + 1).tolist())
+    points = model.new("IfcCartesianPointList3D", _coordinates(mesh.vertices))
+    return model.new("IfcTriangulatedFaceSet", points, None, True, (mesh.faces + 1).tolist())
 
 
 def faceted_brep(model: IfcModel, mesh: Mesh) -> Entity:
     """Return a closed mesh as a faceted boundary representation: IFC2X3 has no face sets."""
-    new = model.file.create_entity
+    new = model.new
     points = [new("IfcCartesianPoint", point) for point in _coordinates(mesh.vertices)]
     faces = []
     for face in mesh.faces.tolist():
@@ -54,24 +54,24 @@ def faceted_brep(model: IfcModel, mesh: Mesh) -> Entity:
 
 def _hexagon(model: IfcModel, across_flats: float) -> Entity:
     corners = _coordinates(regular_polygon(6, across_flats))
-    points = [model.file.create_entity("IfcCartesianPoint", corner) for corner in corners]
-    outline = model.file.create_entity("IfcPolyline", [*points, points[0]])
-    return model.file.create_entity("IfcArbitraryClosedProfileDef", "AREA", None, outline)
+    points = [model.new("IfcCartesianPoint", corner) for corner in corners]
+    outline = model.new("IfcPolyline", [*points, points[0]])
+    return model.new("IfcArbitraryClosedProfileDef", "AREA", None, outline)
 
 
 def _circle(model: IfcModel, diameter: float) -> Entity:
     # Only IFC2X3 demands a position, which is no other than the origin.
-    centre = model.file.create_entity("IfcCartesianPoint", (0.0, 0.0)) if model.schema == "IFC2X3" else None
-    position = centre and model.file.create_entity("IfcAxis2Placement2D", centre)
-    return model.file.create_entity("IfcCircleProfileDef", "AREA", None, position, diameter / 2.0)
+    centre = model.new("IfcCartesianPoint", (0.0, 0.0)) if model.schema == "IFC2X3" else None
+    position = centre and model.new("IfcAxis2Placement2D", centre)
+    return model.new("IfcCircleProfileDef", "AREA", None, position, diameter / 2.0)
 
 
 def extrusion(model: IfcModel, profile: Entity, low: float, high: float) -> Entity:
     """Return a profile extruded along z between two heights."""
-    origin = model.file.create_entity("IfcCartesianPoint", (0.0, 0.0, low))
-    up = model.file.create_entity("IfcDirection", (0.0, 0.0, 1.0))
-    at = model.file.create_entity("IfcAxis2Placement3D", origin)
-    return model.file.create_entity("IfcExtrudedAreaSolid", profile, at, up, high - low)
+    origin = model.new("IfcCartesianPoint", (0.0, 0.0, low))
+    up = model.new("IfcDirection", (0.0, 0.0, 1.0))
+    at = model.new("IfcAxis2Placement3D", origin)
+    return model.new("IfcExtrudedAreaSolid", profile, at, up, high - low)
 
 
 def _threaded_solids(model: IfcModel, form: Threaded) -> list[Entity]:
@@ -100,10 +100,10 @@ def _axis(model: IfcModel, plank: Plank) -> Entity:
     count = max(2, int(np.ceil(plank.blank.length / MESH_SPACING)) + 1)
     centres = plank_axes(plank, np.linspace(0.0, plank.blank.length, count))[0]
     if model.schema == "IFC2X3":
-        corners = [model.file.create_entity("IfcCartesianPoint", point) for point in _coordinates(centres)]
-        return model.file.create_entity("IfcPolyline", corners)
-    points = model.file.create_entity("IfcCartesianPointList3D", _coordinates(centres))
-    return model.file.create_entity("IfcIndexedPolyCurve", points)
+        corners = [model.new("IfcCartesianPoint", point) for point in _coordinates(centres)]
+        return model.new("IfcPolyline", corners)
+    points = model.new("IfcCartesianPointList3D", _coordinates(centres))
+    return model.new("IfcIndexedPolyCurve", points)
 
 
 def surface_style(model: IfcModel, part: Part) -> Entity:
@@ -111,23 +111,23 @@ def surface_style(model: IfcModel, part: Part) -> Entity:
 
     Viewers show the numbers of ``IfcColourRgb`` as they are, as those of 8 bits over 255: sRGB.
     """
-    rgb = model.file.create_entity("IfcColourRgb", None, *(round(value, 4) for value in colour(part)))
+    rgb = model.new("IfcColourRgb", None, *(round(value, 4) for value in colour(part)))
     see_through = () if model.schema == "IFC2X3" else (0.0,)
-    shading = model.file.create_entity("IfcSurfaceStyleShading", rgb, *see_through)
-    style = model.file.create_entity("IfcSurfaceStyle", colour_name(part), "BOTH", [shading])
-    return style if model.schema != "IFC2X3" else model.file.create_entity("IfcPresentationStyleAssignment", [style])
+    shading = model.new("IfcSurfaceStyleShading", rgb, *see_through)
+    style = model.new("IfcSurfaceStyle", colour_name(part), "BOTH", [shading])
+    return style if model.schema != "IFC2X3" else model.new("IfcPresentationStyleAssignment", [style])
 
 
 def representation_maps(model: IfcModel, part: Part, style: Entity) -> list[Entity]:
     """Return the maps of a product: its body, and for planks their axis; every item carries the style itself."""
     kind, items = _body(model, part)
     for item in items:
-        model.file.create_entity("IfcStyledItem", item, [style])
-    shapes = [model.file.create_entity("IfcShapeRepresentation", model.body, "Body", kind, items)]
+        model.new("IfcStyledItem", item, [style])
+    shapes = [model.new("IfcShapeRepresentation", model.body, "Body", kind, items)]
     if isinstance(part, Plank):
         axis = _axis(model, part)
-        shapes.append(model.file.create_entity("IfcShapeRepresentation", model.axis, "Axis", "Curve3D", [axis]))
-    return [model.file.create_entity("IfcRepresentationMap", model.identity, shape) for shape in shapes]
+        shapes.append(model.new("IfcShapeRepresentation", model.axis, "Axis", "Curve3D", [axis]))
+    return [model.new("IfcRepresentationMap", model.identity, shape) for shape in shapes]
 
 
 def mapped_shape(model: IfcModel, maps: tuple[Entity, ...], unmoved: Entity) -> Entity:
@@ -135,11 +135,11 @@ def mapped_shape(model: IfcModel, maps: tuple[Entity, ...], unmoved: Entity) -> 
     shapes = []
     for source in maps:
         drawn = source.MappedRepresentation
-        item = model.file.create_entity("IfcMappedItem", source, unmoved)
+        item = model.new("IfcMappedItem", source, unmoved)
         shapes.append(
-            model.file.create_entity(
+            model.new(
                 "IfcShapeRepresentation", drawn.ContextOfItems, drawn.RepresentationIdentifier,
                 "MappedRepresentation", [item],
             )
         )  # fmt: skip
-    return model.file.create_entity("IfcProductDefinitionShape", None, None, shapes)
+    return model.new("IfcProductDefinitionShape", None, None, shapes)

@@ -35,17 +35,17 @@ def _knots(spline: BSpline) -> tuple[list[int], list[float]]:
 
 def _direction(model: IfcModel, values: Floats) -> Entity:
     rounded = np.round(values / np.linalg.norm(values), _FINE_DIGITS) + 0.0
-    return model.file.create_entity("IfcDirection", rounded.tolist())
+    return model.new("IfcDirection", rounded.tolist())
 
 
 def _poles(model: IfcModel, spline: BSpline) -> list[list[Entity]]:
     """Return the control points of each long edge, the first and the last of which are its ends."""
     values = (np.round(spline.c, _POINT_DIGITS) + 0.0).tolist()
-    return [[model.file.create_entity("IfcCartesianPoint", row[j]) for row in values] for j in range(_CORNERS)]
+    return [[model.new("IfcCartesianPoint", row[j]) for row in values] for j in range(_CORNERS)]
 
 
 def _edges(model: IfcModel, spline: BSpline, poles: list[list[Entity]]) -> _Edges:
-    new, (multiplicities, knots) = model.file.create_entity, _knots(spline)
+    new, (multiplicities, knots) = model.new, _knots(spline)
     vertices = [[new("IfcVertexPoint", row[end]) for row in poles] for end in (0, -1)]
     long = []
     for j, row in enumerate(poles):
@@ -66,13 +66,11 @@ def _edges(model: IfcModel, spline: BSpline, poles: list[list[Entity]]) -> _Edge
 
 
 def _face(model: IfcModel, surface: Entity, edges: list[tuple[Entity, bool]]) -> Entity:
-    loop = model.file.create_entity(
+    loop = model.new(
         "IfcEdgeLoop",
-        [model.file.create_entity("IfcOrientedEdge", None, None, edge, forward) for edge, forward in edges],
+        [model.new("IfcOrientedEdge", None, None, edge, forward) for edge, forward in edges],
     )
-    return model.file.create_entity(
-        "IfcAdvancedFace", [model.file.create_entity("IfcFaceOuterBound", loop, True)], surface, True
-    )
+    return model.new("IfcAdvancedFace", [model.new("IfcFaceOuterBound", loop, True)], surface, True)
 
 
 def _sides(model: IfcModel, spline: BSpline, poles: list[list[Entity]], edges: _Edges) -> list[Entity]:
@@ -81,7 +79,7 @@ def _sides(model: IfcModel, spline: BSpline, poles: list[list[Entity]], edges: _
     for j in range(_CORNERS):
         k = (j + 1) % _CORNERS
         net = [[first, second] for first, second in zip(poles[k], poles[j], strict=True)]
-        surface = model.file.create_entity(
+        surface = model.new(
             "IfcBSplineSurfaceWithKnots", _DEGREE, 1, net, "RULED_SURF", False, False, False, multiplicities, [2, 2],
             knots, [0.0, 1.0], "UNSPECIFIED",
         )  # fmt: skip
@@ -100,10 +98,8 @@ def _ends(model: IfcModel, bar: FlatBar, poles: list[list[Entity]], edges: _Edge
         (poles[0][0], -tangents[0], widths[0], start_loop),
         (poles[0][-1], tangents[1], widths[1], end_loop),
     ):
-        place = model.file.create_entity(
-            "IfcAxis2Placement3D", corner, _direction(model, normal), _direction(model, width)
-        )
-        faces.append(_face(model, model.file.create_entity("IfcPlane", place), loop))
+        place = model.new("IfcAxis2Placement3D", corner, _direction(model, normal), _direction(model, width))
+        faces.append(_face(model, model.new("IfcPlane", place), loop))
     return faces
 
 
@@ -113,4 +109,4 @@ def advanced_brep(model: IfcModel, bar: FlatBar) -> Entity:
     poles = _poles(model, spline)
     edges = _edges(model, spline, poles)
     faces = [*_sides(model, spline, poles, edges), *_ends(model, bar, poles, edges)]
-    return model.file.create_entity("IfcAdvancedBrep", model.file.create_entity("IfcClosedShell", faces))
+    return model.new("IfcAdvancedBrep", model.new("IfcClosedShell", faces))

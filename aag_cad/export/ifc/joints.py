@@ -31,8 +31,8 @@ def write_joints(
     """
     for joint in joints:
         sides, realising = joint_sides(joint, parts)
-        point = model.file.create_entity("IfcCartesianPoint", [round(value, 3) + 0.0 for value in joint.point])
-        place = model.file.create_entity("IfcConnectionPointGeometry", point)
+        point = model.new("IfcCartesianPoint", [round(value, 3) + 0.0 for value in joint.point])
+        place = model.new("IfcConnectionPointGeometry", point)
         for other in sides[1:]:
             names = ("joint", joint.mark, other)
             common = (joint.mark, None, place, elements[sides[0]], elements[other])

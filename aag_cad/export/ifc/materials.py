@@ -29,18 +29,18 @@ def _material(model: IfcModel, part: Part, timber: Timber) -> Entity:
     name, made_of = material_name(part, timber), kind_of(part).material
     wooden = made_of == "timber"
     if model.schema == "IFC2X3":
-        written = model.file.create_entity("IfcMaterial", name)
-        model.file.create_entity("IfcGeneralMaterialProperties", written, MassDensity=density(part, timber))
+        written = model.new("IfcMaterial", name)
+        model.new("IfcGeneralMaterialProperties", written, MassDensity=density(part, timber))
         if wooden:
-            model.file.create_entity(
+            model.new(
                 "IfcMechanicalMaterialProperties", written, YoungModulus=timber.modulus,
                 ShearModulus=timber.shear_modulus,
             )  # fmt: skip
-            model.file.create_entity(
+            model.new(
                 "IfcExtendedMaterialProperties", written, properties(model, _wood(timber)), None, "AAG_MaterialWood"
             )
         return written
-    written = model.file.create_entity("IfcMaterial", name, None, _CATEGORIES[made_of])
+    written = model.new("IfcMaterial", name, None, _CATEGORIES[made_of])
     sets: dict[str, list[Property]] = {
         "Pset_MaterialCommon": [("MassDensity", "IfcMassDensityMeasure", density(part, timber))]
     }
@@ -51,20 +51,20 @@ def _material(model: IfcModel, part: Part, timber: Timber) -> Entity:
             ("ShearModulus", "IfcModulusOfElasticityMeasure", timber.shear_modulus),
         ]
     for title, rows in sets.items():
-        model.file.create_entity("IfcMaterialProperties", title, None, properties(model, rows), written)
+        model.new("IfcMaterialProperties", title, None, properties(model, rows), written)
     return written
 
 
 def _profiled(model: IfcModel, made_of: Entity, name: str, width: float, thickness: float) -> Entity:
     title = f"{width:g} x {thickness:g}"
-    profile = model.file.create_entity("IfcRectangleProfileDef", "AREA", title, None, width, thickness)
-    one = model.file.create_entity("IfcMaterialProfile", title, None, made_of, profile)
-    return model.file.create_entity("IfcMaterialProfileSet", f"{name} {title}", None, [one])
+    profile = model.new("IfcRectangleProfileDef", "AREA", title, None, width, thickness)
+    one = model.new("IfcMaterialProfile", title, None, made_of, profile)
+    return model.new("IfcMaterialProfileSet", f"{name} {title}", None, [one])
 
 
 def _layered(model: IfcModel, made_of: Entity, name: str, thickness: float) -> Entity:
-    layer = model.file.create_entity("IfcMaterialLayer", made_of, thickness, False)
-    return model.file.create_entity("IfcMaterialLayerSet", [layer], f"{name} {thickness:g}")
+    layer = model.new("IfcMaterialLayer", made_of, thickness, False)
+    return model.new("IfcMaterialLayerSet", [layer], f"{name} {thickness:g}")
 
 
 def material_key(part: Part, schema: str) -> tuple[str, str, float, float]:

@@ -74,7 +74,7 @@ def _write_vault(
 ) -> dict[str, Entity]:
     """Write the vault, its shells and what joins them; return all elements by mark. Only the vault is in the storey."""
     origin = model.identity.Location
-    unmoved = model.file.create_entity("IfcCartesianTransformationOperator3D", LocalOrigin=origin)
+    unmoved = model.new("IfcCartesianTransformationOperator3D", LocalOrigin=origin)
     vault = _assembly(model, _VAULT, gridshell.name, "Gridshell", "SITE", storey.ObjectPlacement)
     elements: dict[str, Entity] = {}
     for shell in gridshell.shells:

@@ -7,7 +7,6 @@ from datetime import date, datetime
 from aag_cad.design_making import Crew
 from aag_cad.export.ifc.frame import TIMESTAMP, Entity, IfcModel, declare, rooted
 from aag_cad.export.ifc.sets import Property, write_property_set
-from aag_cad.export.ifc.tasks import Timing, timings
 from assembly.base.segments import Segmentation
 from assembly.base.steps import Plan, Step
 from assembly.booklet.step_words import step_hold, step_words
@@ -35,12 +34,6 @@ class PlannedWork:
         return clock
 
 
-def task_timings(work: PlannedWork) -> dict[str, Timing]:
-    """Return the timing of each step by its id if people were no limit; PlanError if the steps are no order."""
-    minutes = {step.id: step.end_minute - step.start_minute for step in work.schedule.steps}
-    return timings(work.plan, minutes)
-
-
 def _span(minutes: int) -> str:
     return f"PT{minutes}M"
 
@@ -49,9 +42,10 @@ def _iso(moment: datetime) -> str:
     return moment.isoformat()
 
 
-def _task_time(model: IfcModel, timing: Timing, step: ScheduledStep, clock: Clock) -> Entity:
+def _task_time(model: IfcModel, step: ScheduledStep, clock: Clock) -> Entity:
     """Write the times of a task: as scheduled for the crew, and the earliest and latest if people were no limit."""
-    return model.file.create_entity(
+    timing = step.timing
+    return model.new(
         "IfcTaskTime", DataOrigin="PREDICTED", DurationType="WORKTIME", ScheduleDuration=_span(timing.minutes),
         ScheduleStart=_iso(clock.begins(step.start_minute)), ScheduleFinish=_iso(clock.ends(step.end_minute)),
         EarlyStart=_iso(clock.begins(timing.early_start)), EarlyFinish=_iso(clock.ends(timing.early_finish)),
@@ -96,7 +90,7 @@ def write_schedule(model: IfcModel, name: str, work: PlannedWork, elements: Mapp
 
     PlanError if the first day of work is none on which the crew works, or the steps are no order.
     """
-    found, schedule, clock = task_timings(work), work.schedule, work.clock
+    schedule, clock = work.schedule, work.clock
     dates = {
         "CreationDate": TIMESTAMP,
         "StartTime": _iso(clock.begins(0)),
@@ -108,11 +102,11 @@ def write_schedule(model: IfcModel, name: str, work: PlannedWork, elements: Mapp
     declare(model, "plan", [plan])
     rooted(model, "IfcRelAggregates", ("aggregates", "plan"), None, None, plan, [control])
     tasks = {
-        step.id: _task(model, step, _task_time(model, found[step.id], when, clock))
+        step.id: _task(model, step, _task_time(model, when, clock))
         for step, when in zip(work.plan.steps, schedule.steps, strict=True)
     }
     if tasks:
         related = list(tasks.values())
         rooted(model, "IfcRelAssignsToControl", ("scheduled",), None, None, related, None, control)
-    for step in work.plan.steps:
-        _write_step(model, step, found[step.id].minutes, tasks, elements)
+    for step, when in zip(work.plan.steps, schedule.steps, strict=True):
+        _write_step(model, step, when.timing.minutes, tasks, elements)

@@ -17,11 +17,11 @@ def properties(model: IfcModel, rows: Iterable[Property]) -> list[Entity]:
     written = []
     for name, measure, value in rows:
         if isinstance(value, tuple):
-            values = [model.file.create_entity(measure, each) for each in value]
-            written.append(model.file.create_entity("IfcPropertyListValue", name, None, values))
+            values = [model.new(measure, each) for each in value]
+            written.append(model.new("IfcPropertyListValue", name, None, values))
         else:
-            nominal = model.file.create_entity(measure, value)
-            written.append(model.file.create_entity("IfcPropertySingleValue", name, None, nominal))
+            nominal = model.new(measure, value)
+            written.append(model.new("IfcPropertySingleValue", name, None, nominal))
     return written
 
 
@@ -45,7 +45,7 @@ def write_quantities(
     model: IfcModel, name: str, owner: str, rows: Iterable[Quantity], related: Sequence[Entity]
 ) -> None:
     """Write a quantity set and give it to entities; IFC2X3 knows quantity sets by the one name BaseQuantities."""
-    quantities = [model.file.create_entity(entity, title, None, None, value) for title, entity, value in rows]
+    quantities = [model.new(entity, title, None, None, value) for title, entity, value in rows]
     title = "BaseQuantities" if model.schema == "IFC2X3" else name
     definition = rooted(model, "IfcElementQuantity", ("set", name, owner), title, None, None, quantities)
     _define(model, name, owner, definition, related)

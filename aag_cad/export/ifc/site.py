@@ -37,15 +37,13 @@ def true_north(site: Site) -> tuple[float, float] | None:
 
 def _map_conversion(model: IfcModel, site: Site) -> None:
     """Write where vault coordinates lie in the projected system, whose unit is the metre."""
-    metre = model.file.create_entity("IfcSIUnit", None, "LENGTHUNIT", None, "METRE")
+    metre = model.new("IfcSIUnit", None, "LENGTHUNIT", None, "METRE")
     name, (abscissa, ordinate) = f"EPSG:{site.epsg}", _turned(site.rotation_deg)
     if model.schema == "IFC2X3":
         _map_conversion_sets(model, site, metre)
         return
-    target = model.file.create_entity(
-        "IfcProjectedCRS", name, site.crs_name, VerticalDatum=site.vertical_datum, MapUnit=metre
-    )
-    model.file.create_entity(
+    target = model.new("IfcProjectedCRS", name, site.crs_name, VerticalDatum=site.vertical_datum, MapUnit=metre)
+    model.new(
         "IfcMapConversion", model.context, target, site.eastings, site.northings, site.height, abscissa, ordinate,
         _MM_IN_M,
     )  # fmt: skip
@@ -66,9 +64,7 @@ def _map_conversion_sets(model: IfcModel, site: Site, metre: Entity) -> None:
     write_property_set(model, "ePSet_ProjectedCRS", "project", system, [model.project])
     definition = write_property_set(model, "ePSet_MapConversion", "project", rest, [model.project])
     measured = [
-        model.file.create_entity(
-            "IfcPropertySingleValue", key, None, model.file.create_entity("IfcLengthMeasure", value), metre
-        )
+        model.new("IfcPropertySingleValue", key, None, model.new("IfcLengthMeasure", value), metre)
         for key, value in lengths
     ]
     definition.HasProperties = [*measured, *definition.HasProperties]
@@ -77,7 +73,7 @@ def _map_conversion_sets(model: IfcModel, site: Site, metre: Entity) -> None:
 def _georeference(model: IfcModel, site: Site) -> None:
     north = true_north(site)
     if north is not None:
-        model.context.TrueNorth = model.file.create_entity("IfcDirection", north)
+        model.context.TrueNorth = model.new("IfcDirection", north)
     if site.epsg is not None:
         _map_conversion(model, site)
 
@@ -102,7 +98,7 @@ def _building(model: IfcModel, site: Site, gridshell: Gridshell, placement: Enti
     later = model.schema == "IFC4X3_ADD2"
     attributes: dict[str, object] = {} if later else {"ElevationOfTerrain": gridshell.ground}
     if site.address and not later:
-        attributes["BuildingAddress"] = model.file.create_entity("IfcPostalAddress", AddressLines=site.address)
+        attributes["BuildingAddress"] = model.new("IfcPostalAddress", AddressLines=site.address)
     building = rooted(
         model, "IfcBuilding", ("building",), site.building or gridshell.title,
         ObjectPlacement=local_placement(model, placement), CompositionType="ELEMENT", **attributes,

@@ -9,7 +9,7 @@ import networkx as nx
 
 from aag_cad.design_making import Crew
 from aag_cad.export.office.tables import write_locking_table, write_segment_tables
-from aag_cad.files import csv_text, write_text
+from aag_cad.files import write_csv, write_text
 from aag_cad.language import Language
 from aag_cad.parts.model import Gridshell
 from assembly.base.segments import Limits
@@ -19,7 +19,7 @@ from assembly.booklet.gantt import gantt_svg
 from assembly.booklet.graph_page import graph_html
 from assembly.booklet.pdf import write_booklets
 from assembly.booklet.plan_file import graph_pieces, gridshell_pieces, plan_file, plan_json
-from assembly.booklet.schedule_table import schedule_csv
+from assembly.booklet.schedule_table import SCHEDULE_HEADER, schedule_rows
 from assembly.graph.files import graph_json, graphml
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.pictures.laying_plan import laying_rows
@@ -45,18 +45,18 @@ class PlanDossier:
 
 def write_schedule(plan: Plan, schedule: Schedule, title: str, crew: Crew, folder: Path, language: Language) -> None:
     """Write the schedule as table and chart and, if the crew has a first working day, as calendar."""
-    write_text(folder / "tables" / "schedule.csv", schedule_csv(plan, schedule, language))
+    write_csv(folder / "tables" / "schedule.csv", SCHEDULE_HEADER, schedule_rows(plan, schedule, language))
     write_text(folder / "schedule.svg", gantt_svg(plan, schedule, title, language))
     if clock := clock_of(schedule, crew):
         write_calendar(plan, schedule, clock, folder / "schedule.ics", language)
 
 
-def _laying_table(dossier: PlanDossier) -> str:
-    """Return where every member and stud lies on the floor, shell by shell, for setting out with tapes."""
+def _write_laying(dossier: PlanDossier, folder: Path) -> None:
+    """Write where every member and stud lies on the floor, shell by shell, for setting out with tapes."""
     flat, language = dossier.planned.flat, dossier.language
     shells = [shell for shell in dossier.gridshell.shells if shell.mark in flat]
     rows = ((shell.mark, *row) for shell in shells for row in laying_rows(shell, flat[shell.mark], language))
-    return csv_text(LAYING_HEADER, rows)
+    write_csv(folder / "tables" / "laying.csv", LAYING_HEADER, rows)
 
 
 def _write_plan(dossier: PlanDossier, folder: Path) -> None:
@@ -66,7 +66,7 @@ def _write_plan(dossier: PlanDossier, folder: Path) -> None:
     write_text(folder / "plan.json", plan_json(up))
     down = plan_file(planned.down, planned.down_schedule, crew, pieces, planned.segmentation)
     write_text(folder / "disassembly.json", plan_json(down))
-    write_text(folder / "tables" / "laying.csv", _laying_table(dossier))
+    _write_laying(dossier, folder)
 
 
 def _write_schedule(dossier: PlanDossier, folder: Path) -> None:
@@ -115,7 +115,7 @@ def write_graph_groups(graph: "nx.MultiGraph[str]", limits: Limits, folder: Path
     for number, group in enumerate(partition_graph(graph, limits), start=1):
         mass = sum(float(graph.nodes[mark]["mass_kg"]) for mark in group)
         rows.append((str(number), str(len(group)), f"{mass:.1f}", " ".join(sorted(group))))
-    write_text(folder / "tables" / "segments.csv", csv_text(GROUPS_HEADER, rows))
+    write_csv(folder / "tables" / "segments.csv", GROUPS_HEADER, rows)
 
 
 def write_graph_plan(

@@ -3,7 +3,7 @@
 import os
 from collections.abc import Iterator
 
-from aag_cad.files import csv_text, write_text
+from aag_cad.files import write_csv
 from aag_cad.shop.purchases import CutStock, Purchase, Purchases
 
 PURCHASES_HEADER = (
@@ -67,9 +67,9 @@ def cutting_rows(purchases: Purchases) -> Iterator[tuple[str, ...]]:
 
 def write_purchases(purchases: Purchases, path: str | os.PathLike[str]) -> None:
     """Write the purchase list, without spares; FileError if the file cannot be written."""
-    write_text(path, csv_text(PURCHASES_HEADER, (purchase_row(line) for line in purchases.lines)))
+    write_csv(path, PURCHASES_HEADER, (purchase_row(line) for line in purchases.lines))
 
 
 def write_cutting(purchases: Purchases, path: str | os.PathLike[str]) -> None:
     """Write the cutting list, one line for every piece; FileError if the file cannot be written."""
-    write_text(path, csv_text(CUTTING_HEADER, cutting_rows(purchases)))
+    write_csv(path, CUTTING_HEADER, cutting_rows(purchases))

@@ -4,8 +4,9 @@ import math
 import os
 from collections.abc import Iterable
 
-from aag_cad.files import csv_text, write_text
+from aag_cad.files import write_csv
 from aag_cad.mechanics.checks.lamella import lamella_stress
+from aag_cad.parts.index import sorted_planks
 from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.model import Gridshell, Part, Plank, Timber, all_parts
@@ -77,26 +78,25 @@ def hole_rows(plank: Plank) -> list[tuple[str, ...]]:
 def write_parts_table(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     """Write one line for every part; FileError if the file cannot be written."""
     rows = (part_row(part, gridshell) for part in sorted(all_parts(gridshell), key=lambda part: part.mark))
-    write_text(path, csv_text(PARTS_HEADER, rows))
+    write_csv(path, PARTS_HEADER, rows)
 
 
 def write_holes_table(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     """Write one line for every hole of every plank, from its start; FileError if the file cannot be written."""
-    planks = sorted((plank for shell in gridshell.shells for plank in shell.planks), key=lambda plank: plank.mark)
-    write_text(path, csv_text(HOLES_HEADER, (row for plank in planks for row in hole_rows(plank))))
+    write_csv(path, HOLES_HEADER, (row for plank in sorted_planks(gridshell) for row in hole_rows(plank)))
 
 
 def write_locking_table(orders: Iterable[LockingOrder], path: str | os.PathLike[str]) -> None:
     """Write the order in which geodesics lock each shell, a line for each step; FileError if it cannot be written."""
-    write_text(path, csv_text(LOCKING_HEADER, (row for order in orders for row in locking_rows(order))))
+    write_csv(path, LOCKING_HEADER, (row for order in orders for row in locking_rows(order)))
 
 
 def write_segment_tables(
     segmentation: Segmentation, path: str | os.PathLike[str], splices_path: str | os.PathLike[str]
 ) -> None:
     """Write what travels in one piece, and the splices where shells are cut; FileError if they cannot be written."""
-    write_text(path, csv_text(SEGMENTS_HEADER, segment_rows(segmentation)))
-    write_text(splices_path, csv_text(SPLICES_HEADER, splice_rows(segmentation)))
+    write_csv(path, SEGMENTS_HEADER, segment_rows(segmentation))
+    write_csv(splices_path, SPLICES_HEADER, splice_rows(segmentation))
 
 
 def check_row(plank: Plank, timber: Timber) -> tuple[str, ...]:
@@ -119,5 +119,4 @@ def check_row(plank: Plank, timber: Timber) -> tuple[str, ...]:
 
 def write_checks_table(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     """Write one line of forming stresses for every plank; FileError if the file cannot be written."""
-    planks = sorted((plank for shell in gridshell.shells for plank in shell.planks), key=lambda plank: plank.mark)
-    write_text(path, csv_text(CHECKS_HEADER, (check_row(plank, gridshell.timber) for plank in planks)))
+    write_csv(path, CHECKS_HEADER, (check_row(plank, gridshell.timber) for plank in sorted_planks(gridshell)))

@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 from aag_cad import __version__
 from aag_cad.errors import FileError
 from aag_cad.files import write_bytes
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import family_mark, shell_of
 from aag_cad.parts.model import Gridshell, Hole, Plank
 from aag_cad.parts.quantities import mass
@@ -42,10 +43,6 @@ def write_btlx(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     write_bytes(path, _finished(_written(gridshell), gridshell))
 
 
-def _sorted_planks(gridshell: Gridshell) -> list[Plank]:
-    return sorted((plank for shell in gridshell.shells for plank in shell.planks), key=lambda plank: plank.mark)
-
-
 def _written(gridshell: Gridshell) -> ElementTree.Element:
     """Return the file as compas_timber makes it: with its own names, random GUIDs and the time of day."""
     from compas.geometry import Frame
@@ -55,7 +52,7 @@ def _written(gridshell: Gridshell) -> ElementTree.Element:
     from compas_timber.model import TimberModel
 
     model = TimberModel(tolerance=Tolerance(unit="MM"))
-    longest = max((plank.blank.length for plank in _sorted_planks(gridshell)), default=0.0)
+    longest = max((plank.blank.length for plank in index_of(gridshell).planks.values()), default=0.0)
     for column, shell in enumerate(gridshell.shells):
         for row, plank in enumerate(sorted(shell.planks, key=lambda plank: plank.mark)):
             blank = plank.blank
@@ -147,7 +144,7 @@ def _place_of_mark(plank: Plank) -> float:
 def _finished(root: ElementTree.Element, gridshell: Gridshell) -> bytes:
     """Return the file with our names and numbers on its parts, and nothing in it that changes from run to run."""
     project_id = uuid.uuid5(_NAMESPACE, gridshell.name)
-    planks = {plank.mark: plank for plank in _sorted_planks(gridshell)}
+    planks = index_of(gridshell).planks
     for program in root.iter("InitialExportProgram"):
         for name in _NOT_OURS_TO_TELL:
             del program.attrib[name]

@@ -25,7 +25,7 @@ from aag_cad.export.workshop.blank_drawings import (
     Text,
 )
 from aag_cad.export.workshop.dxf import dxf_bytes
-from aag_cad.files import csv_text, write_bytes, write_text
+from aag_cad.files import write_bytes, write_csv
 from aag_cad.network.model import CurveId
 from aag_cad.parts.facade import strip_neighbours
 from aag_cad.parts.kinds import kind_of
@@ -287,4 +287,4 @@ def write_facade_table(design: Design, gridshell: Gridshell, path: str | os.Path
         [bar for shell in gridshell.shells for bar in shell.clamps],
     ):
         rows += [_bar_row(product, gridshell) for product in _bar_products(bars)]
-    write_text(path, csv_text(FACADE_HEADER, rows))
+    write_csv(path, FACADE_HEADER, rows)

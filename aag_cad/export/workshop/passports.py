@@ -3,12 +3,12 @@
 import json
 import math
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
-from aag_cad.files import csv_text, write_bytes, write_text
+from aag_cad.files import write_bytes, write_csv, write_text
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import short_mark
 from aag_cad.parts.model import Gridshell, Hole, Plank, Timber
@@ -55,17 +55,17 @@ def write_passports(
     """
     held = passports(gridshell, service_life_years=service_life_years)
     write_text(json_path, passports_json(held, gridshell))
-    write_text(csv_path, reuse_csv(held))
+    write_csv(csv_path, REUSE_HEADER, map(reuse_row, held))
     write_bytes(pdf_path, passports_pdf(held, gridshell))
 
 
 def passports_json(held: Iterable[Passport], gridshell: Gridshell) -> str:
-    """Return the passports as JSON text, by mark, in mm; what a straight or untwisted plank has not is null."""
+    """Return the passports as JSON text, in mm; what a straight or untwisted plank has not is null."""
     data = {
         "schema_version": PASSPORTS_VERSION,
         "design": gridshell.name,
         "title": gridshell.title,
-        "planks": [_plain(passport) for passport in sorted(held, key=lambda each: each.mark)],
+        "planks": [_plain(passport) for passport in held],
     }
     return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
@@ -108,18 +108,12 @@ def _plain(held: Passport) -> dict[str, Any]:
     }
 
 
-def reuse_csv(held: Iterable[Passport]) -> str:
-    """Return the planks as stock for the next design: ``REUSE_HEADER``, then a line for each plank, LF."""
-    return csv_text(REUSE_HEADER, (reuse_row(each) for each in sorted(held, key=lambda each: each.mark)))
-
-
-def passports_pdf(held: Iterable[Passport], gridshell: Gridshell) -> bytes:
+def passports_pdf(held: Sequence[Passport], gridshell: Gridshell) -> bytes:
     """Return the passports as a booklet of A4 sheets; the same passports give the same bytes."""
     planks = index_of(gridshell).planks
-    ordered = sorted(held, key=lambda each: each.mark)
-    scale = _scale(max((each.length for each in ordered), default=0.0))
+    scale = _scale(max((each.length for each in held), default=0.0))
     pictures: dict[str, str] = {}
-    cards = [_card(each, planks[each.mark], gridshell.timber, scale, pictures) for each in ordered]
+    cards = [_card(each, planks[each.mark], gridshell.timber, scale, pictures) for each in held]
     data = {
         "title": gridshell.title,
         "radius": f"{gridshell.timber.min_bending_radius / MM_PER_M:g}\u00a0m",

@@ -3,8 +3,9 @@
 import math
 import os
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from aag_cad.files import write_text
 from aag_cad.mechanics.sag import StandLayout, flat_pair, stand_layout
@@ -21,6 +22,7 @@ from aag_cad.mechanics.siblings import (
 )
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, Timber
+from aag_cad.parts.twins import made_for_each
 
 PREFABRICATION_HEADER = (
     "beam", "length_mm", "studs", "blocks", "right_minus_left_mm", "least_per_bay_mm", "most_per_bay_mm",
@@ -33,6 +35,7 @@ DRILLING_HEADER = (
     "beam", "joint", "left_offset_mm", "right_offset_mm", "left_mm", "right_mm", "right_minus_left_mm",
     "left_over_drilled_mm", "right_over_drilled_mm",
 )  # fmt: skip
+Row: TypeAlias = tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -58,16 +61,14 @@ def prefabrication_of(shell: Shell, pair: CoupledPair, timber: Timber) -> Prefab
     )
 
 
-def _paired_planks(gridshell: Gridshell) -> Iterator[tuple[Shell, CoupledPair, Plank, Plank]]:
-    """Yield every beam by mark: its shell, its couplings, its left and right plank."""
-    for shell in sorted(gridshell.shells, key=lambda shell: shell.mark):
-        planks = index_of(shell).planks
-        for beam in sorted(shell.beams, key=lambda beam: beam.mark):
-            left, right = (planks[mark] for mark in beam.planks)
-            yield shell, coupled_pair(beam, left, right), left, right
+def _paired_planks(shell: Shell) -> Iterator[tuple[CoupledPair, Plank, Plank]]:
+    """Yield every beam of a shell by mark: its couplings, its left and right plank."""
+    for beam in sorted(shell.beams, key=lambda beam: beam.mark):
+        left, right = (index_of(shell).planks[mark] for mark in beam.planks)
+        yield coupled_pair(beam, left, right), left, right
 
 
-def prefabrication_row(made: Prefabrication) -> tuple[str, ...]:
+def prefabrication_row(made: Prefabrication) -> Row:
     """Return one line of the prefabrication table, in the order of ``PREFABRICATION_HEADER``.
 
     Deviations are the largest distances after the best rigid motion; sigmas belong to hole errors of 0.3 mm. A straight
@@ -114,14 +115,14 @@ def _bolt_holes(plank: Plank) -> dict[str, list[Hole]]:
     return found
 
 
-def drilling_rows(pair: CoupledPair, left: Plank, right: Plank) -> list[tuple[str, ...]]:
+def drilling_rows(pair: CoupledPair, left: Plank, right: Plank) -> list[Row]:
     """Return one line for every bolt of a beam, both planks side by side, in the order of ``DRILLING_HEADER``.
 
     The over-drilled stations stand in for the nominal ones if the beam is to spring to its curve by itself; the
     difference is that of the printed stations.
     """
     on_left, on_right = _bolt_holes(left), _bolt_holes(right)
-    rows: list[tuple[str, ...]] = []
+    rows: list[Row] = []
     for joint, shift in zip(pair.joints, over_drill_shift(pair).tolist(), strict=True):
         for first, second in zip(on_left[joint], on_right[joint], strict=True):
             places = [round(hole.station, 1) for hole in (first, second)]
@@ -137,18 +138,32 @@ def drilling_rows(pair: CoupledPair, left: Plank, right: Plank) -> list[tuple[st
     return rows
 
 
-def _table(header: tuple[str, ...], rows: Iterator[tuple[str, ...]]) -> str:
-    return "".join(",".join(row) + "\n" for row in (header, *rows))
+def _write(
+    gridshell: Gridshell,
+    path: str | os.PathLike[str],
+    header: tuple[str, ...],
+    rows_of: Callable[[Shell], Iterable[Row]],
+) -> None:
+    """Write what a shell gives as CSV, the shells by mark."""
+    made = made_for_each(gridshell, lambda shell: tuple(rows_of(shell)))
+    rows = (row for mark in sorted(made) for row in made[mark])
+    write_text(path, "".join(",".join(row) + "\n" for row in (header, *rows)))
 
 
 def write_prefabrication(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     """Write one line for every coupled beam as CSV; FileError if the file cannot be written."""
-    beams = ((shell, pair) for shell, pair, _, _ in _paired_planks(gridshell))
-    made = (prefabrication_of(shell, pair, gridshell.timber) for shell, pair in beams)
-    write_text(path, _table(PREFABRICATION_HEADER, (prefabrication_row(item) for item in made)))
+
+    def rows(shell: Shell) -> Iterator[Row]:
+        made = (prefabrication_of(shell, pair, gridshell.timber) for pair, _, _ in _paired_planks(shell))
+        return map(prefabrication_row, made)
+
+    _write(gridshell, path, PREFABRICATION_HEADER, rows)
 
 
 def write_drilling(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     """Write one line for every bolt of every beam as CSV, nominal and over-drilled; FileError if it cannot."""
-    pairs = ((pair, left, right) for _, pair, left, right in _paired_planks(gridshell))
-    write_text(path, _table(DRILLING_HEADER, (row for item in pairs for row in drilling_rows(*item))))
+
+    def rows(shell: Shell) -> Iterator[Row]:
+        return (row for item in _paired_planks(shell) for row in drilling_rows(*item))
+
+    _write(gridshell, path, DRILLING_HEADER, rows)

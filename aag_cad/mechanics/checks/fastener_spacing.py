@@ -17,7 +17,7 @@ from aag_cad.findings import Finding
 from aag_cad.language import printed
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import Bolt, CouplingBlock, Gridshell, Hole, HoleUse, Plank, Screw, all_joints, all_parts
+from aag_cad.parts.model import CouplingBlock, Gridshell, Hole, HoleUse, Plank, Screw, all_joints
 from aag_cad.units import Floats
 
 ROUNDING = 0.05
@@ -91,13 +91,13 @@ def table_of(use: HoleUse, diameter: float) -> str:
 
 def _diameters(gridshell: Gridshell) -> Diameters:
     """Return the largest diameter of the bolts and of the screws of each joint."""
-    fasteners = index_of(gridshell).bolts | index_of(gridshell).screws
+    bolts, screws = index_of(gridshell).bolts, index_of(gridshell).screws
     found: Diameters = {}
     for joint in all_joints(gridshell):
-        for mark in joint.fasteners:
-            if mark in fasteners:
-                use: HoleUse = "bolt" if isinstance(fasteners[mark], Bolt) else "screw"
-                found[joint.mark, use] = max(fasteners[mark].diameter, found.get((joint.mark, use), 0.0))
+        for mark in (mark for mark in joint.fasteners if mark in bolts or mark in screws):
+            use: HoleUse = "bolt" if mark in bolts else "screw"
+            diameter = bolts[mark].diameter if mark in bolts else screws[mark].diameter
+            found[joint.mark, use] = max(diameter, found.get((joint.mark, use), 0.0))
     return found
 
 
@@ -324,7 +324,7 @@ def stud_shortfalls(gridshell: Gridshell, diameters: Diameters) -> Iterator[Find
 def washer_shortfalls(gridshell: Gridshell) -> Iterator[Finding]:
     """Yield AAG207: washers narrower than 3 d or thinner than 0.3 d (EN 1995-1-1, 10.4.3); like ones together."""
     groups: dict[str, list[Finding]] = defaultdict(list)
-    for bolt in (part for part in all_parts(gridshell) if isinstance(part, Bolt)):
+    for bolt in index_of(gridshell).bolts.values():
         for name, found, share in (
             ("width", bolt.washer_diameter, WASHER_WIDTH),
             ("thickness", bolt.washer_thickness, WASHER_THICKNESS),
