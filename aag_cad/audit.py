@@ -16,7 +16,7 @@ from aag_cad.parts.bolting import axis_distance, bolt_holes, bolts_by_joint
 from aag_cad.parts.clash import clashes
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark, ridge_name
-from aag_cad.parts.model import Gridshell, Plank, Shell, all_joints
+from aag_cad.parts.model import Gridshell, Shell, all_joints
 from aag_cad.shop.purchases import Purchases
 from aag_cad.units import Floats, deg_per_m
 
@@ -29,14 +29,9 @@ BOW = 1.0
 Check: TypeAlias = Callable[[Design, Gridshell], Iterator[Finding]]
 
 
-def _planks(gridshell: Gridshell) -> Iterator[Plank]:
-    for shell in gridshell.shells:
-        yield from shell.planks
-
-
 def forming_stresses(gridshell: Gridshell) -> list[LamellaStress]:
     """Return the forming stresses of every plank."""
-    return [lamella_stress(plank, gridshell.timber) for plank in _planks(gridshell)]
+    return [lamella_stress(plank, gridshell.timber) for plank in index_of(gridshell).planks.values()]
 
 
 def forming_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
@@ -73,7 +68,7 @@ def hole_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
 def end_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
     """Yield AAG301: ends that reach further past their last joint than ``boundary.max_overhang``."""
     limit = design.boundary.max_overhang
-    for plank in _planks(gridshell):
+    for plank in index_of(gridshell).planks.values():
         if not plank.joints:
             continue
         reach = max(plank.joints[0].station, plank.blank.length - plank.joints[-1].station)

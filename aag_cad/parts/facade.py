@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from aag_cad.design import Design
 from aag_cad.design_tables import LevelShells
 from aag_cad.errors import DesignError
-from aag_cad.families import GEODESICS
+from aag_cad.families import GEODESICS, LAYERS
 from aag_cad.geometry.developable import ruled_edges, shared_range
 from aag_cad.geometry.framed import SAMPLE_SPACING, FramedCurve, frames_at, nearest_station, offset_curve
 from aag_cad.network.model import CurveNetwork, NetworkCurve
@@ -229,7 +229,7 @@ def _crossings(line: _Line, joints: Sequence[Joint]) -> list[tuple[float, Joint]
 
 
 def _is_outer(joint: Joint) -> bool:
-    return any(parse_mark(member).family == "A2" for member in joint.members)
+    return any(parse_mark(member).family == LAYERS[1] for member in joint.members)
 
 
 def _wanted_stations(design: Design, line: _Line, beams: list[float]) -> list[float]:

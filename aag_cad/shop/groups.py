@@ -5,7 +5,7 @@ section 3.2). Holes go right through, so a plank may also be turned end for end 
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from aag_cad.errors import DesignError
 from aag_cad.once import once
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Blank, EndCut, Gridshell, Plank
 from aag_cad.units import Floats
@@ -185,15 +186,10 @@ def drill_groups(planks: Iterable[Plank], stack_limit: int = STACK_LIMIT) -> tup
     )
 
 
-def all_planks(gridshell: Gridshell) -> tuple[Plank, ...]:
-    """Return the planks of all shells."""
-    return tuple(plank for shell in gridshell.shells for plank in shell.planks)
-
-
 @once
 def templates_of(gridshell: Gridshell) -> tuple[DrillGroup, ...]:
     """Return the drilling groups of all planks of a gridshell."""
-    return drill_groups(all_planks(gridshell))
+    return drill_groups(index_of(gridshell).planks.values())
 
 
 def drawn_face(plank: Plank) -> str:
@@ -201,10 +197,9 @@ def drawn_face(plank: Plank) -> str:
     return "its right-hand face, outer edge up" if plank.upright else "its outer face, left edge up"
 
 
-def drilled_joints(group: DrillGroup, planks: Sequence[Plank]) -> tuple[tuple[str, ...], ...]:
+def drilled_joints(group: DrillGroup, planks: Mapping[str, Plank]) -> tuple[tuple[str, ...], ...]:
     """Return for each hole of the master the marks of the joints that it serves, member by member."""
-    by_mark = {plank.mark: plank for plank in planks}
     return tuple(
-        tuple(by_mark[member.mark].blank.holes[member.holes[i]].joint for member in group.members)
+        tuple(planks[member.mark].blank.holes[member.holes[i]].joint for member in group.members)
         for i in range(len(group.master.blank.holes))
     )

@@ -19,7 +19,6 @@ from aag_cad.parts.shapes.sheet import flat_pattern
 from aag_cad.parts.shapes.threaded import BoltPiece
 from aag_cad.parts.triangles import circle_area
 from aag_cad.shop.finger_joints import FingerJoint, board_rules, plank_pieces
-from aag_cad.shop.groups import all_planks
 from aag_cad.shop.offcuts import Reused, fitting_planks, read_offcuts, reused_planks
 from aag_cad.shop.sheets import SheetPlan, SheetRules, sheet_plan
 from aag_cad.shop.stock import CuttingPlan, Piece, StockRules, cutting_plan
@@ -229,7 +228,7 @@ def purchases_of(gridshell: Gridshell, design: Design) -> Purchases:
     FileError if the table of old planks cannot be read.
     """
     stock = design.stock
-    planks = all_planks(gridshell)
+    planks = tuple(index_of(gridshell).planks.values())
     strips = [strip for shell in gridshell.shells for strip in shell.strips]
     old, refused_old = fitting_planks(read_offcuts(Path(stock.offcuts)) if stock.offcuts else (), design.timber)
     reused = reused_planks(planks, old, stock) if old else ()

@@ -10,7 +10,7 @@ import numpy as np
 from aag_cad.language import Language, figure, say, says, words_table
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import is_driven, kind_of
-from aag_cad.parts.marks import joint_of, parse_mark, shell_of, short_mark, whole_of
+from aag_cad.parts.marks import joint_of, shell_of, short_mark, whole_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Part, Plank, Shell, all_parts, shell_parts
 from assembly.base.mark_ranges import joined_ranges, mark_ranges
@@ -71,13 +71,13 @@ def part_rows(
 
 
 def _beam_table(shell: Shell, step: Step, weights: Weights, language: Language) -> dict[str, Any]:
-    planks = index_of(shell).planks
+    index = index_of(shell)
     beams = [beam for beam in shell.beams if set(beam.planks) <= set(step.marks)]
     rows = []
     for beam in beams:
-        left, right = (planks[mark].blank.length for mark in beam.planks)
-        blocks = [place.joint for place in beam.joints if parse_mark(place.joint).family == "K"]
-        studs = [place.joint for place in beam.joints if parse_mark(place.joint).family == "N"]
+        left, right = (index.planks[mark].blank.length for mark in beam.planks)
+        blocks = [place.joint for place in beam.joints if place.joint in index.blocks]
+        studs = [place.joint for place in beam.joints if place.joint in index.studs]
         rows.append([
             short_mark(beam.mark), _length(left), _length(right), str(len(blocks)), str(len(studs)),
             _mass(weights[beam.mark][0], language),

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from aag_cad.families import LAYERS
 from aag_cad.language import Figure, Language, Text, has_words, printed, say, says, text
 from aag_cad.parts.marks import joint_of, parse_mark, short_mark
 from assembly.base.mark_ranges import joined_ranges
@@ -43,7 +44,7 @@ def _counted(marks: Sequence[str]) -> tuple[Text, ...]:
 
 
 def _spliced(splice: SplicePut) -> Text:
-    work, side = splice.work, "inside" if parse_mark(splice.member).family == "A1" else "outside"
+    work, side = splice.work, "inside" if parse_mark(splice.member).family == LAYERS[-1] else "outside"
     figures: dict[str, Figure] = {"side": text(f"site.{work}.{side}")} if work in ("divide", "splice") else {}
     return text(
         f"site.{work}.{splice.shape}",

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from aag_cad.colours import LEGEND
-from aag_cad.families import BEAMS, FAMILIES
+from aag_cad.families import BEAMS, FAMILIES, LAYERS
 from aag_cad.language import Language, figure, say
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Bolt, CrossSection, Shell
@@ -72,9 +72,9 @@ def node_section_svg(shell: Shell, *, language: Language = "en") -> str:
     items += [_beam(centre - FAMILIES[beam].layer * lift, section, stud.across_flats, beam) for beam in BEAMS]
     items += [_bolt(centre - _UNIT * hole.height, bolt) for hole in stud.holes]
     right, plank_x = _AXIS + 130.0, _AXIS + flat / 2.0 + _UNIT * section.thickness / 2.0
-    items += callout(right, centre - lift, plank_x, centre - lift, family_name("A2", language))
+    items += callout(right, centre - lift, plank_x, centre - lift, family_name(LAYERS[1], language))
     items += callout(right, centre, _AXIS, centre, _word(language, "stud", length=stud.length))
-    items += callout(right, centre + lift, plank_x, centre + lift, family_name("A1", language))
+    items += callout(right, centre + lift, plank_x, centre + lift, family_name(LAYERS[-1], language))
     return svg(720.0, 2.0 * centre, items)
 
 
@@ -87,8 +87,8 @@ def block_section_svg(shell: Shell, *, language: Language = "en") -> str:
     top, thick, wide, gap = 80.0, _UNIT * section.thickness, _UNIT * section.width, _UNIT * block.thickness
     low = top + thick
     items = [group([rectangle(_AXIS - gap / 2.0, low, gap, wide)], _cut("block"))]
-    items.append(_beam(low + wide / 2.0, section, block.thickness, "A1"))
-    items.append(group([rectangle(_AXIS - 180.0, top, 360.0, thick)], _cut("G")))
+    items.append(_beam(low + wide / 2.0, section, block.thickness, LAYERS[-1]))
+    items.append(group([rectangle(_AXIS - 180.0, top, 360.0, thick)], _cut(LAYERS[0])))
     away = low + wide / 2.0 + _UNIT * max((abs(hole.offset) for hole in block.holes), default=0.0)
     items += [_bolt(away, bolts[mark]) for mark in fasteners if mark in bolts]
     head, shank, tip = _UNIT * screw.head_diameter / 2.0, _UNIT * screw.diameter / 2.0, _UNIT * screw.length
@@ -98,8 +98,8 @@ def block_section_svg(shell: Shell, *, language: Language = "en") -> str:
     right, plank_x = _AXIS + 210.0, _AXIS + gap / 2.0 + thick / 2.0
     driven = _word(language, "screw", diameter=screw.diameter, length=screw.length)
     items += callout(right, top - 45.0, _AXIS, top, driven)
-    slides = say(language, "pictures.sections.slides", name=family_name("G", language))
+    slides = say(language, "pictures.sections.slides", name=family_name(LAYERS[0], language))
     items += callout(right, top + thick / 2.0, _AXIS + 150.0, top + thick / 2.0, slides)
     items += callout(right, low + 0.4 * wide, _AXIS + gap / 3.0, low + 0.4 * wide, _word(language, "block"))
-    items += callout(right, low + 0.9 * wide, plank_x, low + 0.9 * wide, family_name("A1", language))
+    items += callout(right, low + 0.9 * wide, plank_x, low + 0.9 * wide, family_name(LAYERS[-1], language))
     return svg(870.0, low + wide + 20.0, items)

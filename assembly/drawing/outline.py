@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from aag_cad.geometry.surface import unit
+from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import Kind, Place, kind_of, parts_at
+from aag_cad.parts.marks import shell_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Joint, Part, Shell, ridge_parts, shell_parts
 from aag_cad.units import Floats, Vector
@@ -123,11 +125,10 @@ def ridge_outline(gridshell: Gridshell, pair: Sequence[str], width: float, margi
 
     ``pair`` are the marks of the two ridge planks.
     """
-    matrices = {shell.mark: frame_matrix(shell.placement) for shell in gridshell.shells}
-    planks = {plank.mark: (plank, matrices[shell.mark]) for shell in gridshell.shells for plank in shell.planks}
-    ends = []
-    for plank, matrix in (planks[mark] for mark in pair):
-        points = plank.curve.points[[0, -1]] @ matrix[:3, :3].T + matrix[:3, 3]
+    index, ends = index_of(gridshell), []
+    for mark in pair:
+        matrix = frame_matrix(index.shells[shell_of(mark)].placement)
+        points = index.planks[mark].curve.points[[0, -1]] @ matrix[:3, :3].T + matrix[:3, 3]
         ends.append(points[np.argsort(-points[:, 2])])
     crown, side = np.mean(ends, axis=0)
     along = unit((side - crown) * [1.0, 1.0, 0.0])

@@ -9,6 +9,7 @@ from aag_cad.geometry.framed import frames_at
 from aag_cad.language import Language, figure, say
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.index import index_of
+from aag_cad.parts.marks import shell_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Blade, Bolt, FlatBar, Frame, Gridshell, Joint, Plank, Shell, Shoe, Strap
 from aag_cad.parts.shapes.folded_plate import FoldedPlate, plate_rings
@@ -186,13 +187,14 @@ def strap_section_svg(shell: Shell, strap: Strap, *, language: Language = "en") 
 def blade_section_svg(gridshell: Gridshell, blade: Blade, *, language: Language = "en") -> str:
     """Return the section across a ridge at a blade, at 1 : 6."""
     joint = index_of(gridshell).joints[blade.mark]
-    planks = {plank.mark: (plank, shell.placement) for shell in gridshell.shells for plank in shell.planks}
+    index = index_of(gridshell)
     flat, bolts = _in_frame(blade.frame), [bolt for bolt in gridshell.bolts if bolt.mark in joint.fasteners]
-    marks = [mark for mark in joint.members if mark in planks]
-    timber = [flat(_cross(planks[mark][0], joint.mark, frame_matrix(planks[mark][1]))) for mark in marks]
+    planks = [index.planks[mark] for mark in joint.members if mark in index.planks]
+    matrices = [frame_matrix(index.shells[shell_of(plank.mark)].placement) for plank in planks]
+    timber = [flat(_cross(plank, joint.mark, matrix)) for plank, matrix in zip(planks, matrices, strict=True)]
     plate = _plate(blade.plate)
-    items = [*_timber(timber, [planks[mark][0] for mark in marks]), polygon(plate, _STEEL), *_bolt_items(bolts, flat)]
-    words = [(outline.mean(axis=0), mark) for outline, mark in zip(timber, marks, strict=True)]
+    items = [*_timber(timber, planks), polygon(plate, _STEEL), *_bolt_items(bolts, flat)]
+    words = [(outline.mean(axis=0), plank.mark) for outline, plank in zip(timber, planks, strict=True)]
     told = _word(language, "blade", mark=blade.mark, thick=blade.plate.thickness)
     words.append((plate[len(plate) // 4], told))
     reach = np.array([(0.0, -_ROOM), (0.0, _ROOM)])

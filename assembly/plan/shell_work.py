@@ -72,7 +72,7 @@ def _laying(basis: _Basis, made: Mapping[str, str]) -> Iterator[Work]:
 
 def _sliding(basis: _Basis, laid: str) -> Iterator[Work]:
     """Yield the sliding in of planks that are woven between others, one after the other."""
-    lengths = {plank.mark: plank.blank.length for plank in basis.shell.planks}
+    planks = index_of(basis.shell).planks
     for i, slide in enumerate(basis.order.slides, start=1):
         way = text(
             "steps.slide.way",
@@ -80,7 +80,7 @@ def _sliding(basis: _Basis, laid: str) -> Iterator[Work]:
             end=text(f"steps.slide.{slide.end}"),
             count=len(slide.joints),
             joints=", ".join(short_mark(joint) for joint in slide.joints),
-            needed=lengths[slide.unit],
+            needed=planks[slide.unit].blank.length,
             free=text("steps.slide.open") if slide.free == float("inf") else f"{slide.free:.0f} mm",
         )
         work = basis.work(f"slide.{i}", "slide", text("steps.slide.title", marks=joined_ranges((slide.unit,))))

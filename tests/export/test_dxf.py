@@ -21,9 +21,10 @@ from hypothesis import strategies as st
 from aag_cad.export.workshop.blank_drawings import HOLE_LAYERS, LAYERS, blank_drawing, joint_names, spread
 from aag_cad.export.workshop.dxf import dxf_bytes, write_blank_dxfs
 from aag_cad.parts.forming import formed_points
+from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Plank, Shell
-from aag_cad.shop.groups import DrillGroup, Laid, all_planks, drill_groups, drilled_joints, laid_points
+from aag_cad.shop.groups import DrillGroup, Laid, drill_groups, drilled_joints, laid_points
 from aag_cad.units import Floats
 
 
@@ -36,7 +37,7 @@ def folder(gridshell: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> Pa
 
 @pytest.fixture(scope="module")
 def groups(gridshell: Gridshell) -> tuple[DrillGroup, ...]:
-    return drill_groups(all_planks(gridshell))
+    return drill_groups(list(index_of(gridshell).planks.values()))
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +63,8 @@ def redrilled(plank: Plank, **change: object) -> DrillGroup:
 
 
 def reread(group: DrillGroup, gridshell: Gridshell, tmp_path: Path) -> Drawing:
-    drawing = blank_drawing(group, drilled_joints(group, [group.master]), gridshell.title, gridshell.timber)
+    joints = drilled_joints(group, {group.master.mark: group.master})
+    drawing = blank_drawing(group, joints, gridshell.title, gridshell.timber)
     path = tmp_path / f"{group.mark}.dxf"
     path.write_bytes(dxf_bytes(drawing))
     return ezdxf.readfile(path)

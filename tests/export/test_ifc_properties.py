@@ -14,10 +14,11 @@ from aag_cad.export.ifc.assembly_sets import segment_of
 from aag_cad.export.ifc.model import ifc_model
 from aag_cad.export.ifc.options import IfcOptions
 from aag_cad.export.ifc.properties import hole_text
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Footing, Gridshell, Hole, Part, Plank, Rod, Strip, all_parts
 from aag_cad.parts.quantities import largest_twist, mass, material_name, smallest_radius
 from aag_cad.parts.shapes.sheet import flat_pattern
-from aag_cad.shop.groups import all_planks, drill_groups
+from aag_cad.shop.groups import drill_groups
 from aag_cad.units import deg_per_m
 from assembly.base.steps import Step
 
@@ -90,7 +91,7 @@ def test_a_slot_says_how_much_longer_than_round_it_is() -> None:
 def test_planks_name_the_template_that_they_are_drilled_by(
     sample: Gridshell, sets: Mapping[str, Sets], planks: Sequence[Plank]
 ) -> None:
-    groups = {member.mark: g.mark for g in drill_groups(all_planks(sample)) for member in g.members}
+    groups = {member.mark: g.mark for g in drill_groups(list(index_of(sample).planks.values())) for member in g.members}
     for plank in planks:
         assert sets[plank.mark]["AAG_Fabrication"]["DrillingGroup"] == groups[plank.mark]
         occurrence = sets[plank.mark]["Pset_ManufacturerOccurrence"]

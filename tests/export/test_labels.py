@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from pypdf import PageObject, PdfReader
 
 from aag_cad.export.workshop.labels import labels_pdf
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Gridshell
-from aag_cad.shop.groups import all_planks, drill_groups
+from aag_cad.shop.groups import templates_of
 
 MM_PER_POINT = 25.4 / 72.0
 LABEL = (99.1, 38.1)
@@ -122,7 +123,7 @@ def decoded(modules: Modules) -> str:
 
 
 def test_every_plank_and_every_beam_has_one_label(gridshell: Gridshell, labelled: list[str]) -> None:
-    planks = [plank.mark for plank in all_planks(gridshell)]
+    planks = list(index_of(gridshell).planks)
     beams = [beam.mark for shell in gridshell.shells for beam in shell.beams]
     assert sorted(labelled) == sorted([*planks, *beams])
     assert len(planks) == 183
@@ -130,13 +131,13 @@ def test_every_plank_and_every_beam_has_one_label(gridshell: Gridshell, labelled
 
 
 def test_labels_are_sorted_by_mark_planks_first(gridshell: Gridshell, labelled: list[str]) -> None:
-    count = len(all_planks(gridshell))
+    count = len(index_of(gridshell).planks)
     assert labelled[:count] == sorted(labelled[:count])
     assert labelled[count:] == sorted(labelled[count:])
 
 
 def test_a_sheet_holds_fourteen_labels_on_a4(pdf: PdfReader, gridshell: Gridshell) -> None:
-    count = len(all_planks(gridshell)) + sum(len(shell.beams) for shell in gridshell.shells)
+    count = len(index_of(gridshell).planks) + sum(len(shell.beams) for shell in gridshell.shells)
     assert len(pdf.pages) == -(-count // 14)
     for page in pdf.pages:
         assert float(page.mediabox.width) * MM_PER_POINT == pytest.approx(210.0, abs=0.01)
@@ -170,8 +171,8 @@ def test_the_codes_are_drawn_module_by_module(
 
 
 def test_a_label_tells_length_section_and_template(gridshell: Gridshell, text: str) -> None:
-    templates = {member.mark: group.mark for group in drill_groups(all_planks(gridshell)) for member in group.members}
-    for plank in all_planks(gridshell):
+    templates = {member.mark: group.mark for group in templates_of(gridshell) for member in group.members}
+    for plank in index_of(gridshell).planks.values():
         _, found, rest = text.partition(f"{plank.mark}\n")
         facts = rest[:120]
         assert found

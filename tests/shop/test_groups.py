@@ -15,6 +15,7 @@ from aag_cad.design import Design
 from aag_cad.errors import DesignError
 from aag_cad.network.model import CurveNetwork
 from aag_cad.parts.build import gridshell_from
+from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Blank, CrossSection, EndCut, Gridshell, Hole, Plank
 from aag_cad.shop.groups import (
@@ -22,7 +23,6 @@ from aag_cad.shop.groups import (
     LAID,
     DrillGroup,
     Laid,
-    all_planks,
     cut_slope,
     drill_groups,
     drilled_joints,
@@ -74,18 +74,18 @@ def sizes(groups: Sequence[DrillGroup]) -> dict[int, int]:
 
 def test_the_bare_vault_needs_fifty_three_templates(uncovered: Gridshell) -> None:
     """44 asymptotic planks and the bottom plank recur in three shells; geodesics and ridge planks mirror as well."""
-    groups = drill_groups(all_planks(uncovered))
+    groups = drill_groups(list(index_of(uncovered).planks.values()))
     assert sizes(groups) == {3: 45, 6: 8}
     assert [group.mark for group in groups] == [template_mark(i) for i in range(1, 54)]
 
 
 def test_the_covered_vault_needs_a_template_for_each_geodesic(gridshell: Gridshell) -> None:
     """What carries the mullions stands where no outer beam crosses, and these cross mirrored geodesics elsewhere."""
-    assert sizes(drill_groups(all_planks(gridshell))) == {3: 59, 6: 1}
+    assert sizes(drill_groups(list(index_of(gridshell).planks.values()))) == {3: 59, 6: 1}
 
 
 def test_every_plank_lies_in_one_group_and_the_master_lies_as_drawn(gridshell: Gridshell) -> None:
-    planks = all_planks(gridshell)
+    planks = list(index_of(gridshell).planks.values())
     groups = drill_groups(planks)
     marks = [member.mark for group in groups for member in group.members]
     assert sorted(marks) == sorted(plank.mark for plank in planks)
@@ -96,7 +96,7 @@ def test_every_plank_lies_in_one_group_and_the_master_lies_as_drawn(gridshell: G
 
 def test_the_same_plank_of_three_shells_is_one_stack(gridshell: Gridshell) -> None:
     """The paper, section 3.2: groups of three identical planks, for three shells, are clamped and drilled together."""
-    for group in drill_groups(all_planks(gridshell)):
+    for group in drill_groups(list(index_of(gridshell).planks.values())):
         for stack in group.stacks:
             marks = [parse_mark(member.mark) for member in stack]
             assert [mark.shell for mark in marks] == [1, 2, 3]
@@ -104,7 +104,7 @@ def test_the_same_plank_of_three_shells_is_one_stack(gridshell: Gridshell) -> No
 
 
 def test_mirrored_geodesics_share_a_template(uncovered: Gridshell) -> None:
-    groups = drill_groups(all_planks(uncovered))
+    groups = drill_groups(list(index_of(uncovered).planks.values()))
     found = {parse_mark(m.mark).index: group.mark for group in groups for m in group.members if "-G-" in m.mark}
     assert all(found[index] == found[15 - index] for index in range(1, 15))
     assert len(set(found.values())) == 7
@@ -112,12 +112,12 @@ def test_mirrored_geodesics_share_a_template(uncovered: Gridshell) -> None:
 
 def test_left_and_right_siblings_never_share_a_template(gridshell: Gridshell) -> None:
     """The paper, section 3.2: siblings are drilled individually, with slight differences from node to node."""
-    for group in drill_groups(all_planks(gridshell)):
+    for group in drill_groups(list(index_of(gridshell).planks.values())):
         assert len({parse_mark(member.mark).part for member in group.members}) == 1
 
 
 def test_the_order_of_the_planks_does_not_matter(gridshell: Gridshell) -> None:
-    planks = list(all_planks(gridshell))
+    planks = list(index_of(gridshell).planks.values())
     groups = drill_groups(planks)
     random.Random(4).shuffle(planks)
     again = drill_groups(planks)
@@ -125,7 +125,7 @@ def test_the_order_of_the_planks_does_not_matter(gridshell: Gridshell) -> None:
 
 
 def test_a_stack_holds_at_most_as_many_planks_as_are_clamped(gridshell: Gridshell) -> None:
-    planks = all_planks(gridshell)
+    planks = list(index_of(gridshell).planks.values())
     for limit, sizes in ((1, {1}), (2, {1, 2}), (3, {3}), (6, {3, 6})):
         groups = drill_groups(planks, limit)
         assert {len(stack) for group in groups for stack in group.stacks} == sizes
@@ -229,10 +229,9 @@ def test_skew_ends_are_part_of_the_shape(plank: Plank, laid: Laid, start: float,
 
 
 def test_the_joints_of_a_template_hole_are_those_of_the_planks_that_it_drills(gridshell: Gridshell) -> None:
-    planks = all_planks(gridshell)
-    by_mark = {plank.mark: plank for plank in planks}
-    for group in drill_groups(planks):
+    planks = index_of(gridshell).planks
+    for group in drill_groups(planks.values()):
         joints = drilled_joints(group, planks)
         for column, member in enumerate(group.members):
             drilled = Counter(row[column] for row in joints)
-            assert drilled == Counter(hole.joint for hole in by_mark[member.mark].blank.holes)
+            assert drilled == Counter(hole.joint for hole in planks[member.mark].blank.holes)

@@ -20,7 +20,7 @@ from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.model import Frame, Gridshell, Part, Shell, all_joints, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame
-from aag_cad.shop.groups import all_planks, templates_of
+from aag_cad.shop.groups import templates_of
 
 __all__ = ["IfcOptions", "IfcSchema", "ifc_model", "write_ifc"]
 
@@ -93,7 +93,7 @@ def _write_sets(
     model: IfcModel, gridshell: Gridshell, found: Sequence[Product], elements: Mapping[str, Entity]
 ) -> None:
     """Write the property and quantity sets of all parts."""
-    planks, timber = all_planks(gridshell), gridshell.timber
+    planks, timber = tuple(index_of(gridshell).planks.values()), gridshell.timber
     groups = {member.mark: group.mark for group in templates_of(gridshell) for member in group.members}
     for product in found:
         write_product_sets(model, product.key, product.parts, elements, timber)

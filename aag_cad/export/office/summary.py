@@ -15,6 +15,7 @@ from aag_cad.mechanics.checks.supports import footing_checks
 from aag_cad.model import Model
 from aag_cad.network.extent import ShellExtent
 from aag_cad.parts.blades import ridge_gaps
+from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.model import Gridshell, all_parts, shell_parts
 from aag_cad.parts.quantities import mass
@@ -27,7 +28,7 @@ from assembly.base.steps import Plan
 
 def counts(gridshell: Gridshell) -> dict[str, int]:
     """Return how many parts of each kind there are, and of shells, beams and joints."""
-    families = Counter(plank.family for shell in gridshell.shells for plank in shell.planks)
+    families = Counter(plank.family for plank in index_of(gridshell).planks.values())
     kinds = Counter(kind_of(part).name for part in all_parts(gridshell))
     return {
         "shells": len(gridshell.shells),
@@ -66,7 +67,7 @@ def figures(gridshell: Gridshell, web: WebQuality, extent: ShellExtent) -> dict[
         "largest_angle_aa_deg": web.angle_aa_deg.max,
         "smallest_angle_ag_deg": web.angle_ag_deg.min,
         "largest_angle_ag_deg": web.angle_ag_deg.max,
-        "longest_plank_mm": max(plank.blank.length for shell in gridshell.shells for plank in shell.planks),
+        "longest_plank_mm": max(plank.blank.length for plank in index_of(gridshell).planks.values()),
         "bending_utilisation": max(s.combined for s in stresses) / timber.bending_strength,
         "torsion_utilisation": max(s.torsion for s in stresses) / timber.shear_strength,
         "largest_unrolled_bow_mm": max(s.bow for s in stresses),

@@ -22,8 +22,9 @@ from aag_cad.export.workshop.blank_drawings import (
     spread,
 )
 from aag_cad.files import write_bytes
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Blank, Gridshell, Hole, Timber
-from aag_cad.shop.groups import DrillGroup, all_planks, drawn_face, drilled_joints, templates_of
+from aag_cad.shop.groups import DrillGroup, drawn_face, drilled_joints, templates_of
 from aag_cad.typesetting import printout_pdf
 from aag_cad.units import MM_PER_M
 
@@ -181,7 +182,7 @@ def templates_data(gridshell: Gridshell, paper: PaperName) -> dict[str, Any]:
     """Return the data of the printout of all templates; DesignError on an unknown paper or if a plank does not fit."""
     if paper not in PAPERS:
         raise DesignError(f"paper: {paper!r} is not known; choose one of {', '.join(PAPERS)}")
-    chosen, planks = PAPERS[paper], all_planks(gridshell)
+    chosen, planks = PAPERS[paper], index_of(gridshell).planks
     return {
         "title": gridshell.title,
         "margin": chosen.margin,

@@ -26,8 +26,9 @@ from aag_cad.export.workshop.blank_drawings import (
     blank_drawing,
 )
 from aag_cad.files import write_bytes
+from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Gridshell
-from aag_cad.shop.groups import all_planks, drilled_joints, templates_of
+from aag_cad.shop.groups import drilled_joints, templates_of
 
 _ALIGN = {
     "left": TextEntityAlignment.MIDDLE_LEFT,
@@ -119,7 +120,7 @@ def write_blank_dxfs(gridshell: Gridshell, folder: str | os.PathLike[str]) -> No
 
     FileError if a file cannot be written.
     """
-    planks = all_planks(gridshell)
+    planks = index_of(gridshell).planks
     for group in templates_of(gridshell):
         drawing = blank_drawing(group, drilled_joints(group, planks), gridshell.title, gridshell.timber)
         write_bytes(Path(folder) / f"{group.mark}.dxf", dxf_bytes(drawing))

@@ -10,7 +10,7 @@ import numpy as np
 
 from aag_cad.files import write_bytes
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import parse_mark, shell_of
+from aag_cad.parts.marks import shell_of
 from aag_cad.parts.model import Beam, Gridshell, Plank, Shell
 from aag_cad.shop.groups import DrillGroup, drawn_face, templates_of
 from aag_cad.typesetting import printout_pdf
@@ -63,10 +63,10 @@ def _blank(plank: Plank) -> list[list[Any]]:
     return [[hole.station / length, 0.5 - hole.offset / width, hole.use == "bolt"] for hole in plank.blank.holes]
 
 
-def _joints(beam: Beam) -> list[list[Any]]:
+def _joints(gridshell: Gridshell, beam: Beam) -> list[list[Any]]:
     """Return the picture of a beam: a dot for each joint, filled for those on studs."""
-    families = [(joint, parse_mark(joint.joint).family) for joint in beam.joints]
-    return [[joint.station / beam.curve.length, 0.5, family == "N"] for joint, family in families]
+    studs = index_of(gridshell).studs
+    return [[place.station / beam.curve.length, 0.5, place.joint in studs] for place in beam.joints]
 
 
 def _plank_label(gridshell: Gridshell, plank: Plank, group: DrillGroup, outline: Outline) -> dict[str, Any]:
@@ -93,7 +93,7 @@ def _beam_label(gridshell: Gridshell, beam: Beam, outline: Outline) -> dict[str,
         "mark": beam.mark,
         "shell": shell_of(beam.mark),
         "line": _few(outline.lines[beam.mark]).tolist(),
-        "picture": _joints(beam),
+        "picture": _joints(gridshell, beam),
         "facts": [
             f"coupled beam, {len(beam.joints)} joints",
             f"L {left:.1f} · R {right:.1f} mm",

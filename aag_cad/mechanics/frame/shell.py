@@ -73,7 +73,7 @@ class _Line:
         return tuple(f"{self.mark} at {there[i]}" if i in there else ends[i] for i in range(len(self.stations)))
 
 
-def _kept(places: list[tuple[float, str]], kinds: dict[str, str], length: float, trimmed: bool) -> list[float]:
+def _kept(places: list[tuple[float, str]], known: dict[str, Joint], length: float, trimmed: bool) -> list[float]:
     """Return the stations of nodes: one for joints at the same place, ends where they reach far enough past the last.
 
     ``trimmed``: of two joints at an end nearer than ``SHORTEST_END`` only one has a node, a stud before a block.
@@ -85,7 +85,7 @@ def _kept(places: list[tuple[float, str]], kinds: dict[str, str], length: float,
         else:
             groups.append([(station, joint)])
     stations = [group[0][0] for group in groups]
-    studs = [any(kinds[joint] == "AA" for _, joint in group) for group in groups]
+    studs = [any(known[joint].kind == "AA" for _, joint in group) for group in groups]
     for end, inner in ((0, 1), (-1, -2)):
         if trimmed and len(stations) > 2 and abs(stations[inner] - stations[end]) < SHORTEST_END:
             if studs[end] and not studs[inner]:
@@ -96,18 +96,18 @@ def _kept(places: list[tuple[float, str]], kinds: dict[str, str], length: float,
     return [*before, *stations, *([length] if length - stations[-1] > SHORTEST_END else [])]
 
 
-def _line(member: Beam | Plank, kinds: dict[str, str]) -> _Line | None:
+def _line(member: Beam | Plank, known: dict[str, Joint]) -> _Line | None:
     """Return the line of a member, or None if fewer than two of its places bear a joint of the frame."""
     length = member.curve.length
     wanted = _ON_BEAMS if isinstance(member, Beam) else _ON_FLAT
     places = sorted(
         (min(max(joint.station, 0.0), length), joint.joint)
         for joint in member.joints
-        if kinds.get(joint.joint) in wanted
+        if joint.joint in known and known[joint.joint].kind in wanted
     )
     if not places or places[-1][0] - places[0][0] < _SAME_PLACE:
         return None
-    stations = np.array(_kept(places, kinds, length, isinstance(member, Beam)))
+    stations = np.array(_kept(places, known, length, isinstance(member, Beam)))
     frames = frames_at(member.curve, stations)
     joints = {joint: int(np.argmin(np.abs(stations - station))) for station, joint in places}
     return _Line(member.mark, length, stations, frames.point, frames.normal, frames.binormal, joints)
@@ -218,14 +218,14 @@ def shell_frame(
     ``tight``: the bolts of the studs are tightened, so that beams no longer turn against each other. Beam ends shorter
     than 120 mm past a joint are left out. FrameError if a shell has no beams with joints or its joints contradict.
     """
-    kinds = {joint.mark: str(joint.kind) for joint in shell.joints}
+    index = index_of(shell)
     flat = [plank for plank in shell.planks if not plank.upright and (fixed is None or plank.mark in fixed)]
     candidates: list[Beam | Plank] = [*shell.beams, *flat]
-    found = {member.mark: _line(member, kinds) for member in candidates}
+    found = {member.mark: _line(member, index.joints) for member in candidates}
     lines = {mark: line for mark, line in found.items() if line is not None}
     if not any(beam.mark in lines for beam in shell.beams):
         raise FrameError(f"{shell.mark}: none of its beams has two joints; at least one is needed for a frame")
-    beams, planks = index_of(shell).beams, index_of(shell).planks
+    beams, planks = index.beams, index.planks
     material = FrameMaterial(timber.modulus, timber.shear_modulus)
     elements: list[FrameElement] = []
     members: list[str] = []
@@ -242,7 +242,6 @@ def shell_frame(
     for line in upright:
         for joint, place in line.joints.items():
             beam_nodes[joint] = (*beam_nodes.get(joint, ()), line.nodes[place])
-    home = index_of(shell).unit_of
-    links = tuple(_links(lines, shell.joints, home, tight))
+    links = tuple(_links(lines, shell.joints, index.unit_of, tight))
     masses = _masses(shell, timber, upright, {node.mark: i for i, node in enumerate(nodes)}, beam_nodes)
     return ShellFrame(FrameModel(nodes, tuple(elements), links), tuple(members), masses, beam_nodes)
