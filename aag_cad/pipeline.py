@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -21,18 +21,21 @@ from aag_cad.design_tables import (
 )
 from aag_cad.errors import DesignError
 from aag_cad.export.ifc.options import IfcOptions, require_known
-from aag_cad.files import publishing, read_text, sizes_below
+from aag_cad.export.office.optimise_report import write_report
+from aag_cad.export.office.plan_files import PlanDossier
+from aag_cad.export.office.summary import summary_of, write_summary
+from aag_cad.files import publishing, read_text, sizes_below, write_bytes, write_text
 from aag_cad.findings import Finding, worst_first
 from aag_cad.geometry.profiles import ArcProfile, CrpcProfile, HyperboloidProfile, Profile, SplineProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.geometry.surface import Chart
+from aag_cad.language import language_of
 from aag_cad.model import Model
 from aag_cad.network.build import shell_network
 from aag_cad.network.edges import bottom_coordinate, top_coordinate
 from aag_cad.network.extent import shell_extent
 from aag_cad.network.model import CurveNetwork
 from aag_cad.network.polylines import read_polylines
-from aag_cad.outputs import EVERY_OUTPUT, Dossier, chosen_outputs
 from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.model import Gridshell
 from aag_cad.shop.purchases import purchases_of
@@ -44,10 +47,9 @@ from aag_cad.web.optimise import Method, optimise
 from aag_cad.web.quality import quality
 from aag_cad.web.start import StartWeb, start_web, web_chart
 from aag_cad.web.web import Web, crpc_web, sampled_web
-
-if TYPE_CHECKING:
-    from assembly.base.segments import Limits
-    from assembly.plan.planned import Planned
+from assembly.base.segments import Limits
+from assembly.checks.findings import disassembly_faults, plan_faults
+from assembly.plan.planned import Planned, limits_of, planned_of
 
 Report = Callable[[str], None]
 IterationReport = Callable[[Iteration], None]
@@ -59,7 +61,7 @@ class Build:
 
     model: Model
     findings: tuple[Finding, ...]
-    planned: "Planned"
+    planned: Planned
     summary: dict[str, Any]
 
 
@@ -140,9 +142,6 @@ def worked_surface(design: Design) -> tuple[Chart, Web]:
 
 def write_optimised(found: Optimised, goals: Goals, folder: Path) -> dict[str, int]:
     """Write web.obj and web.npz without the ghost rows, and the report, into a folder; return the files' sizes."""
-    from aag_cad.export.office.optimise_report import write_report
-    from aag_cad.files import write_bytes, write_text
-
     web = Web(found.web.vertices[goals.bottom_row or 0 :])
     write_text(folder / "web.obj", web_obj(web))
     write_bytes(folder / "web.npz", web_npz(web))
@@ -174,14 +173,11 @@ def gridshell_of(design: Design) -> Gridshell:
     return model_of(design).gridshell
 
 
-def checked_plans(gridshell: Gridshell, crew: Crew, limits: "Limits", edges_first: bool = True) -> "Planned":
+def checked_plans(gridshell: Gridshell, crew: Crew, limits: Limits, edges_first: bool = True) -> Planned:
     """Return all plans for a gridshell, with what independent walks find wrong with them among their findings.
 
     PlanError and FrameError as ``planned_of``.
     """
-    from assembly.checks.findings import disassembly_faults, plan_faults
-    from assembly.plan.planned import planned_of
-
     planned = planned_of(gridshell, crew, limits, edges_first=edges_first)
     up = plan_faults(planned.plan, gridshell, planned.segmentation, planned.locking)
     down = disassembly_faults(planned.down, gridshell)
@@ -210,9 +206,8 @@ def build(
     behind. ``report`` is called with the name of each stage as it begins. FileError if the folder cannot be written,
     PlanError if the sheets are not printed in ``language``.
     """
-    from aag_cad.export.office.summary import summary_of, write_summary
-    from aag_cad.language import language_of
-    from assembly.plan.planned import limits_of
+    # The libraries of the formats take a second to load.
+    from aag_cad.outputs import EVERY_OUTPUT, Dossier, chosen_outputs
 
     outputs, ifc_options = chosen_outputs(only), ifc or IfcOptions()
     require_known(ifc_options)
@@ -232,7 +227,7 @@ def build(
         begin("assembly")
         planned = checked_plans(model.gridshell, design.crew, limits_of(design.transport))
         findings = worst_first([*checked, *planned.findings])
-        dossier = Dossier(model, planned, purchases, ifc_options, printed)
+        dossier = Dossier(model, PlanDossier(planned, model.gridshell, design.crew, printed), purchases, ifc_options)
         for output in outputs:
             begin(output)
             EVERY_OUTPUT[output](dossier, staging)
