@@ -139,6 +139,5 @@ def plank_pieces(
             pieces += _pieces(plank.mark, length, joints, stock)
         else:
             refused.append(_too_long(plank, joints, stock))
-    made = {piece.mark for piece in pieces}
-    listed = [joint for group in placed.values() for joint in group if joint.mark in made]
+    listed = [joint for group in placed.values() for joint in group if stock.finger_joint]
     return tuple(pieces), tuple(sorted(listed, key=lambda joint: (joint.mark, joint.station))), tuple(refused)

@@ -64,12 +64,6 @@ class DrillGroup:
         return tuple(self.members[i : i + step] for i in range(0, len(self.members), step))
 
 
-@dataclass
-class _Draft:
-    master: Plank
-    members: list[Member]
-
-
 def template_mark(number: int) -> str:
     """Return the mark of a template, e.g. ``T-01``: the one place where it is printed; numbers from 1."""
     return f"T-{number:02d}"
@@ -81,8 +75,7 @@ def laid_points(points: Floats, length: float, laid: Laid) -> Floats:
     End for end is half a turn in the plane of the template, over is half a turn about the length; every one of the four
     ways is its own inverse.
     """
-    turned = laid in ("turned end for end", "turned end for end and over")
-    over = laid in ("turned over", "turned end for end and over")
+    turned, over = "end for end" in laid, "over" in laid
     station = length - points[:, 0] if turned else points[:, 0]
     return np.column_stack([station, -points[:, 1] if turned != over else points[:, 1]])
 
@@ -97,21 +90,15 @@ def cut_slope(cut: EndCut) -> float:
 
 def _ends(blank: Blank, laid: Laid) -> Floats:
     """Return how far the cuts at the start and at the end of the template reach along the plank, (2,) mm."""
-    start, end = cut_slope(blank.start_cut), cut_slope(blank.end_cut)
-    slopes = {
-        "as is": (start, end),
-        "turned end for end": (end, start),
-        "turned over": (-start, -end),
-        "turned end for end and over": (-end, -start),
-    }[laid]
-    return np.array(slopes) * blank.section.width / 2.0
+    slopes = np.array([cut_slope(blank.start_cut), cut_slope(blank.end_cut)])
+    turned = slopes[::-1] if "end for end" in laid else slopes
+    return (-turned if "over" in laid else turned) * blank.section.width / 2.0
 
 
 def _hole_figures(blank: Blank, laid: Laid) -> Floats:
     """Return station and offset under the template, diameter and slot of all holes, (n, 4)."""
-    figures = np.array([(h.station, h.offset, h.diameter, h.slot) for h in blank.holes], dtype=np.float64).reshape(
-        -1, 4
-    )
+    listed = [(h.station, h.offset, h.diameter, h.slot) for h in blank.holes]
+    figures = np.array(listed, dtype=np.float64).reshape(-1, 4)
     return np.column_stack([laid_points(figures[:, :2], blank.length, laid), figures[:, 2:]])
 
 
@@ -166,23 +153,23 @@ def drill_groups(planks: Iterable[Plank], stack_limit: int = STACK_LIMIT) -> tup
     """
     if stack_limit < 1:
         raise DesignError(f"stack_limit: {stack_limit} planks cannot be clamped and drilled; give 1 or more")
-    drafts: list[_Draft] = []
+    drafts: list[tuple[Plank, list[Member]]] = []
     cells: dict[tuple[int, int], list[int]] = {}
     for plank in sorted(planks, key=_shop_order):
         count, length = len(plank.blank.holes), plank.blank.length
         # A master within the tolerance lies in the cell of its own length or over the border of it.
         near = {math.floor((length + gap) / _CELL) for gap in (-2.0 * TOLERANCE, 0.0, 2.0 * TOLERANCE)}
         for number in sorted(i for cell in near for i in cells.get((count, cell), ())):
-            member = member_of(drafts[number].master, plank)
-            if member is not None:
-                drafts[number].members.append(member)
+            master, members = drafts[number]
+            if member := member_of(master, plank):
+                members.append(member)
                 break
         else:
             cells.setdefault((count, math.floor(length / _CELL)), []).append(len(drafts))
-            drafts.append(_Draft(plank, [Member(plank.mark, "as is", tuple(range(count)))]))
+            drafts.append((plank, [Member(plank.mark, "as is", tuple(range(count)))]))
     return tuple(
-        DrillGroup(template_mark(number), draft.master, tuple(draft.members), stack_limit)
-        for number, draft in enumerate(drafts, start=1)
+        DrillGroup(template_mark(number), master, tuple(members), stack_limit)
+        for number, (master, members) in enumerate(drafts, start=1)
     )
 
 

@@ -10,16 +10,16 @@ from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
-from scipy.optimize import Bounds, LinearConstraint, milp
+from scipy.optimize import LinearConstraint
 
 from aag_cad.design_making import Stock, Timber
 from aag_cad.errors import FileError
 from aag_cad.findings import Finding
 from aag_cad.parts.model import Blank, CrossSection, Hole, Plank
 from aag_cad.shop.passports import REUSE_HEADER
+from aag_cad.shop.stock import times_cut
 
 SAME_SIZE = 0.5
-_NODES = 300
 _SEQUENCES = 20_000
 
 Interval: TypeAlias = tuple[float, float]
@@ -262,14 +262,7 @@ def _chosen(columns: Sequence[tuple[int, tuple[_Cut, ...]]], supply: Sequence[in
         for cut in cuts:
             rows[len(supply) + cut.kind, j] += 1.0
     worth = np.array([sum(lengths[cut.kind] for cut in cuts) for _, cuts in columns])
-    answer = milp(
-        -worth / 1000.0,
-        integrality=np.ones(len(columns), dtype=np.int64),
-        bounds=Bounds(0.0, np.inf),
-        constraints=LinearConstraint(rows, -np.inf, np.array([*supply, *demand])),
-        options={"mip_rel_gap": 0.0, "node_limit": _NODES},
-    )
-    return [0] * len(columns) if answer.x is None else [round(x) for x in answer.x]
+    return times_cut(-worth / 1000.0, LinearConstraint(rows, -np.inf, np.array([*supply, *demand])))[0]
 
 
 def reused_planks(planks: Iterable[Plank], offcuts: Iterable[OldPlank], stock: Stock) -> tuple[Reused, ...]:

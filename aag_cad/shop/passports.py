@@ -7,9 +7,9 @@ import numpy as np
 
 from aag_cad.errors import DesignError
 from aag_cad.geometry.framed import curvatures_at
-from aag_cad.mechanics.checks.lamella import lamella_stress
+from aag_cad.mechanics.checks.lamella import LamellaStress, lamella_stress
 from aag_cad.parts.index import sorted_planks
-from aag_cad.parts.model import Blank, CrossSection, Gridshell, Hole, Plank, Timber
+from aag_cad.parts.model import Blank, CrossSection, Gridshell, Plank, Timber
 from aag_cad.parts.quantities import largest_twist, smallest_radius
 from aag_cad.units import Floats
 
@@ -49,30 +49,31 @@ class Strain:
 class Passport:
     """What is known of one plank when it is taken down; mm, rad/mm, N/mm2, from the model and not measured.
 
-    Utilisations are by the characteristic strengths f_m and f_v. ``smallest_radius`` is infinite for a plank that
-    stays straight; its station and that of the largest twist are the first within a thousandth of them. ``clear`` lists
-    the stretches without holes, the longest first. The set that creep leaves is not known before the plank is measured,
-    so there is no figure for it.
+    ``smallest_radius`` is infinite for a plank that stays straight; its station and that of the largest twist are the
+    first within a thousandth of them. ``clear`` lists the stretches without holes, the longest first. The set that
+    creep leaves is not known before the plank is measured, so there is no figure for it.
     """
 
-    mark: str
+    plank: Plank
+    timber: Timber
     design: str
-    species: str
-    strength_class: str
-    section: CrossSection
-    length: float
-    stock_origin: str
-    holes: tuple[Hole, ...]
     service_life_years: float
     smallest_radius: float
     smallest_radius_station: float
     largest_twist: float
     largest_twist_station: float
-    bending_stress: float
-    bending_utilisation: float
-    shear_stress: float
-    shear_utilisation: float
+    stress: LamellaStress
     clear: tuple[Stretch, ...]
+
+    @property
+    def bending_utilisation(self) -> float:
+        """Bending and helix stress together by the characteristic strength f_m."""
+        return self.stress.combined / self.timber.bending_strength
+
+    @property
+    def shear_utilisation(self) -> float:
+        """Torsion stress by the characteristic strength f_v."""
+        return self.stress.torsion / self.timber.shear_strength
 
 
 def strain_along(plank: Plank, spacing: float = _SPACING) -> Strain:
@@ -124,25 +125,16 @@ def passport(plank: Plank, timber: Timber, design: str, *, service_life_years: f
             f"service_life_years: {service_life_years!r} is not allowed; give the planned years in use, above 0, e.g. 2"
         )
     strain = strain_along(plank)
-    stress = lamella_stress(plank, timber)
     return Passport(
-        mark=plank.mark,
+        plank=plank,
+        timber=timber,
         design=design,
-        species=timber.species,
-        strength_class=timber.strength_class,
-        section=plank.blank.section,
-        length=plank.blank.length,
-        stock_origin=stock_origin(plank.blank.section),
-        holes=plank.blank.holes,
         service_life_years=service_life_years,
         smallest_radius=smallest_radius(plank),
         smallest_radius_station=_first_peak(strain.stations, strain.bending),
         largest_twist=largest_twist(plank),
         largest_twist_station=_first_peak(strain.stations, strain.twist),
-        bending_stress=stress.combined,
-        bending_utilisation=stress.combined / timber.bending_strength,
-        shear_stress=stress.torsion,
-        shear_utilisation=stress.torsion / timber.shear_strength,
+        stress=lamella_stress(plank, timber),
         clear=clear_stretches(plank.blank),
     )
 
@@ -161,15 +153,7 @@ def reuse_row(held: Passport) -> tuple[str, ...]:
     Holes are station:offset:diameter, stations from the start, joined by semicolons, to 0.1 mm. The format knows round
     holes only: a slot is given as the round hole that holds it.
     """
-    holes = (
-        f"{hole.station:.1f}:{round(hole.offset, 1) + 0.0:.1f}:{hole.diameter + hole.slot:g}" for hole in held.holes
-    )
-    return (
-        held.mark,
-        f"{held.length:.1f}",
-        f"{held.section.width:g}",
-        f"{held.section.thickness:g}",
-        held.species,
-        held.strength_class,
-        ";".join(holes),
-    )
+    blank, timber = held.plank.blank, held.timber
+    holes = (f"{h.station:.1f}:{round(h.offset, 1) + 0.0:.1f}:{h.diameter + h.slot:g}" for h in blank.holes)
+    sizes = (f"{blank.length:.1f}", f"{blank.section.width:g}", f"{blank.section.thickness:g}")
+    return (held.plank.mark, *sizes, timber.species, timber.strength_class, ";".join(holes))

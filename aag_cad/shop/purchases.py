@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from aag_cad.design import Design
 from aag_cad.findings import Finding
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import kind_of, shaped
-from aag_cad.parts.model import Gridshell, JointKind, Part, Plank, Strip, all_parts
+from aag_cad.parts.model import Gridshell, JointKind, Part, Plank, all_parts
 from aag_cad.parts.quantities import STEEL_DENSITY, density, mass, material_name, sizes, volume
 from aag_cad.parts.shapes.folded_plate import FOLDED_PLATE
 from aag_cad.parts.shapes.prism import PRISM
@@ -20,8 +20,8 @@ from aag_cad.parts.shapes.threaded import BoltPiece
 from aag_cad.parts.triangles import circle_area
 from aag_cad.shop.finger_joints import FingerJoint, board_rules, plank_pieces
 from aag_cad.shop.offcuts import Reused, fitting_planks, read_offcuts, reused_planks
-from aag_cad.shop.sheets import SheetPlan, SheetRules, sheet_plan
-from aag_cad.shop.stock import CuttingPlan, Piece, StockRules, cutting_plan
+from aag_cad.shop.sheets import SheetPlan, SheetRules, SheetUse, sheet_plan
+from aag_cad.shop.stock import Board, CuttingPlan, Piece, StockRules, cutting_plan
 from aag_cad.units import MM3_PER_M3, MM_PER_M
 
 _USES: dict[JointKind, str] = {
@@ -147,16 +147,15 @@ def _boards(
     return board, joints, refused
 
 
-def _cut_lines(cut: CutStock) -> list[Purchase]:
-    lines = []
-    for length, count in cut.plan.counts.items():
-        cubic = count * length * cut.width * cut.thickness / MM3_PER_M3
-        lines.append(
-            Purchase(
-                cut.item, f"{cut.section} x {length:g}", cut.standard, count, "pcs", count * length / MM_PER_M, cubic,
-                cubic * cut.density, cut.use,
-            )
-        )  # fmt: skip
+def _by_length(
+    bought: Iterable[Board | SheetUse], item: str, section: tuple[float, float], standard: str, density: float, use: str
+) -> list[Purchase]:
+    """Return a line for each length of boards, bars or sheets of one section (width, thickness)."""
+    lines, (width, thickness) = [], section
+    for length, count in sorted(Counter(board.length for board in bought).items()):
+        cubic = count * length * width * thickness / MM3_PER_M3
+        size, metres = f"{thickness:g} x {width:g} x {length:g}", count * length / MM_PER_M
+        lines.append(Purchase(item, size, standard, count, "pcs", metres, cubic, cubic * density, use))
     return lines
 
 
@@ -209,18 +208,6 @@ def _ready_made_lines(gridshell: Gridshell) -> list[Purchase]:
     return lines
 
 
-def _sheet_lines(plan: SheetPlan, strip: Strip) -> list[Purchase]:
-    lines, bought = [], kind_of(strip).bought
-    for length, count in sorted(Counter(sheet.length for sheet in plan.sheets).items()):
-        cubic = count * length * plan.width * strip.thickness / MM3_PER_M3
-        size = f"{strip.thickness:g} x {plan.width:g} x {length:g}"
-        lines.append(
-            Purchase(bought.item, size, bought.standard, count, "pcs", count * length / MM_PER_M, cubic,
-                     cubic * strip.density, _plural([strip]))
-        )  # fmt: skip
-    return lines
-
-
 def purchases_of(gridshell: Gridshell, design: Design) -> Purchases:
     """Return what is bought for a gridshell, without spares, and how it is cut.
 
@@ -237,37 +224,50 @@ def purchases_of(gridshell: Gridshell, design: Design) -> Purchases:
     bars, too_long_bars = _bars(gridshell, design)
     outlines = [(strip.mark, flat_pattern(strip).outline) for strip in strips]
     sheets = sheet_plan(outlines, SheetRules(design.facade.sheet_width, design.facade.sheet_lengths, stock.sheet_gap))
-    lines = [line for cut in (board, *bars) for line in _cut_lines(cut)]
-    if strips:
-        lines += _sheet_lines(sheets, strips[0])
+    lines: list[Purchase] = []
+    for cut in (board, *bars):
+        section = cut.width, cut.thickness
+        lines += _by_length(cut.plan.boards, cut.item, section, cut.standard, cut.density, cut.use)
+    sheet = kind_of(strips[0]).bought if strips else None
+    if sheet:
+        section = sheets.width, strips[0].thickness
+        lines += _by_length(sheets.sheets, sheet.item, section, sheet.standard, strips[0].density, _plural(strips))
     if reused:
-        section = f"{design.timber.thickness:g} x {design.timber.width:g}"
+        timber = design.timber
         metres = math.fsum(item.length for item in reused) / MM_PER_M
-        cubic = metres * design.timber.thickness * design.timber.width / 1e6
+        cubic = metres * timber.thickness * timber.width / 1e6
         count = len({item.old for item in reused})
-        lines.append(Purchase("old plank", section, "", count, "pcs", metres, cubic, cubic * design.timber.density,
-                              "planks"))  # fmt: skip
+        size, weight = f"{timber.thickness:g} x {timber.width:g}", cubic * timber.density
+        lines.append(Purchase("old plank", size, "", count, "pcs", metres, cubic, weight, "planks"))
     lines += _fastener_lines(gridshell) + _ready_made_lines(gridshell)
-    refused = (*refused_old, *too_long, *too_long_bars, *sheets.refused)
-    sheet = kind_of(strips[0]).bought.item if strips else ""
-    return Purchases((board, *bars), sheets, sheet, reused, joints, refused, tuple(lines))
+    refused = (*refused_old, *too_long, *too_long_bars)
+    return Purchases((board, *bars), sheets, sheet.item if sheet else "", reused, joints, refused, tuple(lines))
 
 
-def _cut_summary(cut: CutStock) -> dict[str, Any]:
-    plan = cut.plan
-    bought = plan.bought * cut.width * cut.thickness
+def _bought_summary(plan: CuttingPlan | SheetPlan, pieces: Sequence[Board | SheetUse], **own: float) -> dict[str, Any]:
+    """Return how much is bought in which lengths, what is ``own`` to boards or sheets, the bound, and its proof."""
     return {
         "bought_m": round(plan.bought / MM_PER_M, 3),
-        "used_m": round(plan.used / MM_PER_M, 3),
-        "waste_m": round(plan.waste / MM_PER_M, 3),
-        "waste_percent": round(plan.waste_percent, 2),
-        "waste_percent_of_volume": round(100.0 * (1.0 - cut.standing / bought), 2) if bought else 0.0,
-        "pieces": {f"{length:g}": count for length, count in plan.counts.items()},
+        **own,
+        "pieces": {f"{length:g}": count for length, count in sorted(Counter(p.length for p in pieces).items())},
         "bound_m": round(plan.bound / MM_PER_M, 3),
         "proven": plan.proven,
         "first_fit_decreasing_m": round(plan.first_fit_decreasing / MM_PER_M, 3),
         "refused": len(plan.refused),
     }
+
+
+def _cut_summary(cut: CutStock) -> dict[str, Any]:
+    plan = cut.plan
+    bought = plan.bought * cut.width * cut.thickness
+    return _bought_summary(
+        plan,
+        plan.boards,
+        used_m=round(plan.used / MM_PER_M, 3),
+        waste_m=round(plan.waste / MM_PER_M, 3),
+        waste_percent=round(plan.waste_percent, 2),
+        waste_percent_of_volume=round(100.0 * (1.0 - cut.standing / bought), 2) if bought else 0.0,
+    )
 
 
 def stock_summary(purchases: Purchases) -> dict[str, Any]:
@@ -278,22 +278,13 @@ def stock_summary(purchases: Purchases) -> dict[str, Any]:
     table: dict[str, Any] = {f"{cut.item} {cut.section}": _cut_summary(cut) for cut in purchases.cut}
     sheets = purchases.sheets
     if sheets.sheets:
-        table[f"{purchases.sheet} {sheets.width:g}"] = {
-            "bought_m": round(sheets.bought / MM_PER_M, 3),
-            "waste_percent_of_area": round(sheets.waste_percent, 2),
-            "pieces": _counted(f"{sheet.length:g}" for sheet in sheets.sheets),
-            "bound_m": round(sheets.bound / MM_PER_M, 3),
-            "proven": sheets.proven,
-            "first_fit_decreasing_m": round(sheets.first_fit_decreasing / MM_PER_M, 3),
-            "refused": len(sheets.refused),
-        }
+        waste = round(sheets.waste_percent, 2)
+        table[f"{purchases.sheet} {sheets.width:g}"] = _bought_summary(
+            sheets, sheets.sheets, waste_percent_of_area=waste
+        )
     table["old planks"] = {
         "planks": len(purchases.reused),
         "used_m": round(math.fsum(item.length for item in purchases.reused) / MM_PER_M, 3),
     }
     table["finger joints"] = len(purchases.finger_joints)
     return table
-
-
-def _counted(names: Iterable[str]) -> Mapping[str, int]:
-    return dict(sorted(Counter(names).items()))

@@ -6,14 +6,12 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
-from scipy.optimize import Bounds, LinearConstraint, milp
+from scipy.optimize import LinearConstraint
 
-from aag_cad.findings import Finding
-from aag_cad.shop.stock import Piece, StockRules, cutting_plan
+from aag_cad.shop.stock import Piece, StockRules, cutting_plan, times_cut
 from aag_cad.units import Floats
 
 _PATTERNS = 20_000
-_NODES = 300
 _SAME = 0.05
 
 # A bay of a sheet holds one kind of strip, or two kinds side by side.
@@ -41,16 +39,15 @@ class PlacedStrip:
 
 @dataclass(frozen=True)
 class SheetUse:
-    """A sheet as bought, numbered from 1: x along the ribs from one end, y from one edge, mm."""
+    """A sheet as bought: x along the ribs from one end, y from one edge, mm."""
 
-    number: int
     length: float
     strips: tuple[PlacedStrip, ...]
 
 
 @dataclass(frozen=True)
 class SheetPlan:
-    """Sheets to buy; lengths in mm, ``strip_area`` in mm2.
+    """Sheets to buy; lengths in mm, ``strip_area`` in mm2; ``refused`` are the strips that no sheet holds.
 
     ``bound`` holds for plans in bays: strips behind one another, or two side by side, turned end for end if that helps,
     and never across the ribs or on their other face.
@@ -61,7 +58,7 @@ class SheetPlan:
     strip_area: float
     bound: float
     first_fit_decreasing: float
-    refused: tuple[Finding, ...]
+    refused: tuple[str, ...]
 
     @property
     def bought(self) -> float:
@@ -85,10 +82,6 @@ class _Fit:
 
     length: float
     places: tuple[tuple[float, float, bool], ...]
-
-
-def _turned(outline: Floats, turned: bool) -> Floats:
-    return -outline if turned else outline
 
 
 def _at_corner(outline: Floats) -> Floats:
@@ -143,7 +136,7 @@ def _side_by_side(first: Floats, second: Floats, rules: SheetRules) -> _Fit | No
     length = float(max(np.ptp(first[:, 0]), np.ptp(second[:, 0])))
     fits = []
     for turned in (False, True):
-        strips = (_at_corner(first), _at_corner(_turned(second, turned)))
+        strips = (_at_corner(first), _at_corner(-second if turned else second))
         spare = [length - float(strip[:, 0].max()) for strip in strips]
         for x_first, x_second in sorted({(0.0, 0.0), (spare[0], spare[1])}):
             moved = (strips[0] + np.array([x_first, 0.0]), strips[1] + np.array([x_second, 0.0]))
@@ -218,27 +211,9 @@ def _fewest(
         for bay in pattern:
             for i in bay:
                 rows[i, j] += 1.0
-    answer = milp(
-        np.array(costs) / 1000.0,
-        integrality=np.ones(len(patterns), dtype=np.int64),
-        bounds=Bounds(0.0, np.inf),
-        constraints=LinearConstraint(rows, np.array(demand), np.inf),
-        options={"mip_rel_gap": 0.0, "node_limit": _NODES},
-    )
-    times = [0] * len(patterns) if answer.x is None else [round(x) for x in answer.x]
+    times, answer = times_cut(np.array(costs) / 1000.0, LinearConstraint(rows, np.array(demand), np.inf))
     plan = [pattern for pattern, count in zip(patterns, times, strict=True) for _ in range(count)]
     return plan, 1000.0 * float(answer.mip_dual_bound or 0.0)
-
-
-def _too_large(mark: str, outline: Floats, rules: SheetRules) -> Finding | None:
-    length, width = np.ptp(outline, axis=0).tolist()
-    if width > rules.width:
-        remedy = "use more geodesics, or a wider sheet in facade.sheet_width"
-        return Finding("AAG903", "error", mark, "width of the flat strip", width, rules.width, "mm", remedy)
-    if length > max(rules.lengths):
-        remedy = "add a longer sheet to facade.sheet_lengths"
-        return Finding("AAG903", "error", mark, "length of the flat strip", length, max(rules.lengths), "mm", remedy)
-    return None
 
 
 def _placed(plan: Iterable[tuple[Bay, ...]], bays: Mapping[Bay, _Fit], kinds: Sequence[tuple[Floats, list[str]]],
@@ -255,13 +230,14 @@ def _placed(plan: Iterable[tuple[Bay, ...]], bays: Mapping[Bay, _Fit], kinds: Se
             fit = bays[wanted]
             for i, (x, y, turned) in zip(wanted, fit.places, strict=True):
                 mark = waiting[i].pop(0)
-                corner = _turned(originals[mark], turned).min(axis=0)
+                outline = originals[mark]
+                corner = (-outline if turned else outline).min(axis=0)
                 listed.append(PlacedStrip(mark, float(at + x - corner[0]), float(y - corner[1]), turned))
             at += fit.length + rules.gap
             kept.append(wanted)
         if kept:
-            sheets.append(SheetUse(0, _length_of(kept, bays, rules), tuple(listed)))
-    return [SheetUse(number, sheet.length, sheet.strips) for number, sheet in enumerate(sheets, start=1)]
+            sheets.append(SheetUse(_length_of(kept, bays, rules), tuple(listed)))
+    return sheets
 
 
 def area(outline: Floats) -> float:
@@ -273,16 +249,15 @@ def area(outline: Floats) -> float:
 def sheet_plan(strips: Iterable[tuple[str, Floats]], rules: SheetRules) -> SheetPlan:
     """Return the sheets for strips, given by mark and outline (n, 2) in mm with x along the ribs.
 
-    Strips that no sheet holds are refused (AAG903). The integer programme runs over all sets of bays that fit on a
-    sheet. If these are too many, two strips share a width nowhere and the plan is that of their lengths alone, without
-    a bound where a pair would have fitted.
+    The integer programme runs over all sets of bays that fit on a sheet. If these are too many, two strips share a
+    width nowhere and the plan is that of their lengths alone, without a bound where a pair would have fitted.
     """
-    listed = sorted(strips, key=lambda strip: strip[0])
-    refused = [refusal for mark, outline in listed if (refusal := _too_large(mark, outline, rules))]
-    marks_refused = {refusal.mark for refusal in refused}
-    originals = {mark: outline for mark, outline in listed if mark not in marks_refused}
+    listed = dict(sorted(strips, key=lambda strip: strip[0]))
+    room = max(rules.lengths), rules.width
+    originals = {mark: outline for mark, outline in listed.items() if np.all(np.ptp(outline, axis=0) <= room)}
+    refused = tuple(mark for mark in listed if mark not in originals)
     if not originals:
-        return SheetPlan((), rules.width, 0.0, 0.0, 0.0, tuple(refused))
+        return SheetPlan((), rules.width, 0.0, 0.0, 0.0, refused)
     kinds = _kinds(list(originals.items()))
     demand = [len(marks) for _, marks in kinds]
     bays = _bays([outline for outline, _ in kinds], rules)
@@ -305,5 +280,5 @@ def sheet_plan(strips: Iterable[tuple[str, Floats]], rules: SheetRules) -> Sheet
         math.fsum(area(outline) for outline in originals.values()),
         bound,
         usual.first_fit_decreasing,
-        tuple(refused),
+        refused,
     )

@@ -9,11 +9,11 @@ less, and what is left is the cutting-stock problem of Gilmore and Gomory (1961)
 import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import TypeAlias
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias
 
 import numpy as np
-from scipy.optimize import Bounds, LinearConstraint, linprog, milp
+from scipy.optimize import LinearConstraint, linprog, milp
 
 from aag_cad.units import Floats
 
@@ -64,9 +64,8 @@ class Cut:
 
 @dataclass(frozen=True)
 class Board:
-    """A board (or bar) as bought, numbered from 1, and its cuts from one end to the other."""
+    """A board (or bar) as bought, and its cuts from one end to the other."""
 
-    number: int
     length: float
     cuts: tuple[Cut, ...]
 
@@ -110,11 +109,6 @@ class CuttingPlan:
     def proven(self) -> bool:
         """Whether no plan can buy less."""
         return self.bought <= self.bound + _SLACK
-
-    @property
-    def counts(self) -> dict[float, int]:
-        """Number of boards of each stock length that is bought, shortest first."""
-        return dict(sorted(Counter(board.length for board in self.boards).items()))
 
 
 @dataclass(frozen=True)
@@ -252,34 +246,27 @@ def _relaxation(wanted: _Demand, columns: list[Column]) -> tuple[float, Floats]:
         columns += fresh
 
 
-def _least_bought(wanted: _Demand, columns: Sequence[Column], lower: int) -> tuple[list[Column], bool]:
-    """Return the boards of the best plan from given patterns, and whether the integer programme is solved to the end.
-
-    That no plan buys less than ``lower`` steps is known, and lets the search end as soon as one is found.
-    """
-    costs = np.array([[wanted.stock[i] / wanted.step for _, i in columns]])
-    answer = milp(
-        costs[0],
-        integrality=np.ones(len(columns), dtype=np.int64),
-        bounds=Bounds(0.0, np.inf),
-        constraints=(
-            LinearConstraint(_matrix(columns), np.array(wanted.demand), np.inf),
-            LinearConstraint(costs, lower, np.inf),
-        ),
-        options={"mip_rel_gap": 0.0, "node_limit": _NODES},
-    )
-    if answer.x is None:
-        return [], False
-    times = [round(x) for x in answer.x]
-    return [column for column, count in zip(columns, times, strict=True) for _ in range(count)], answer.status == 0
+def times_cut(costs: Floats, *limits: LinearConstraint) -> tuple[list[int], Any]:
+    """Return how often each pattern is cut so that all costs least, 0 if no plan is found, and the solver's answer."""
+    whole = np.ones(len(costs), dtype=np.int64)
+    answer = milp(costs, integrality=whole, constraints=limits, options={"mip_rel_gap": 0.0, "node_limit": _NODES})
+    return [0] * len(costs) if answer.x is None else [round(x) for x in answer.x], answer
 
 
 def _bought(wanted: _Demand, boards: Iterable[Column]) -> int:
     return sum(wanted.stock[i] for _, i in boards) // wanted.step
 
 
-def _better(wanted: _Demand, plan: list[Column], other: list[Column]) -> list[Column]:
-    return other if other and _bought(wanted, other) < _bought(wanted, plan) else plan
+def _improved(wanted: _Demand, plan: list[Column], columns: Sequence[Column], lower: int) -> tuple[list[Column], bool]:
+    """Return a plan or the best from given patterns if that buys less, and whether the search for it came to its end.
+
+    That no plan buys less than ``lower`` steps is known, and lets the search end as soon as one is found.
+    """
+    costs = np.array([wanted.stock[i] / wanted.step for _, i in columns])
+    enough = LinearConstraint(_matrix(columns), np.array(wanted.demand), np.inf)
+    times, answer = times_cut(costs, enough, LinearConstraint(costs[None], lower, np.inf))
+    found = [column for column, count in zip(columns, times, strict=True) for _ in range(count)]
+    return (found if found and _bought(wanted, found) < _bought(wanted, plan) else plan), answer.status == 0
 
 
 def _solved(wanted: _Demand) -> tuple[list[Column], int, float, int]:
@@ -288,25 +275,21 @@ def _solved(wanted: _Demand) -> tuple[list[Column], int, float, int]:
     If the plan from the generated patterns misses the bound, the integer programme is solved again over all patterns
     whose reduced cost is less than the gap: no better plan holds any other.
     """
-    usual = _first_fit_decreasing(wanted)
-    singles = [tuple(int(i == j) for j in range(len(wanted.sizes))) for i in range(len(wanted.sizes))]
+    best = usual = _first_fit_decreasing(wanted)
+    singles = [tuple(row) for row in np.eye(len(wanted.sizes), dtype=int).tolist()]
     columns = sorted({*usual, *((single, _shortest_stock(wanted, single)) for single in singles)})
     relaxed, duals = _relaxation(wanted, columns)
     lower = math.ceil(relaxed - 1e-6)
-    best = usual
     if _bought(wanted, best) > lower:
-        best = _better(wanted, best, _least_bought(wanted, columns, lower)[0])
+        best, _ = _improved(wanted, best, columns, lower)
     if _bought(wanted, best) > lower:
         gap = _bought(wanted, best) - 1.0 - relaxed
-        near: set[Column] = set(best)
-        complete = True
+        near, complete = set(best), True
         for i, (stock, room) in enumerate(zip(wanted.stock, wanted.room, strict=True)):
-            worth = stock / wanted.step - gap - 1e-6
-            patterns, ended = _patterns_worth(duals, wanted, room, worth)
+            patterns, ended = _patterns_worth(duals, wanted, room, stock / wanted.step - gap - 1e-6)
             near.update((pattern, i) for pattern in patterns if any(pattern))
             complete = complete and ended
-        second, solved = _least_bought(wanted, sorted(near), lower)
-        best = _better(wanted, best, second)
+        best, solved = _improved(wanted, best, sorted(near), lower)
         if solved and complete:
             lower = _bought(wanted, best)
     return best, lower, relaxed, _bought(wanted, usual)
@@ -332,12 +315,12 @@ def _boards(
             filled.append((wanted.stock[_shortest_stock(wanted, tuple(taken))], cuts))
     filled.sort(key=lambda item: (-item[0], [-group[0].length for group in item[1]], item[1][0][0].mark))
     boards = []
-    for number, (length, cuts) in enumerate(filled, start=1):
+    for length, cuts in filled:
         position, listed = _tenths(rules.trim), []
         for group in cuts:
             listed.append(Cut(position / 10.0, group[0].length, group))
             position += _tenths(group[0].length) + _tenths(rules.kerf)
-        boards.append(Board(number, length / 10.0, tuple(listed)))
+        boards.append(Board(length / 10.0, tuple(listed)))
     return boards
 
 
@@ -347,7 +330,7 @@ def cutting_plan(pieces: Iterable[Piece], rules: StockRules) -> CuttingPlan:
     Pieces longer than every stock are refused, not an error. The bound is that of the linear programme, rounded up to
     what can be bought, or the optimum itself where the integer programme is searched to its end.
     """
-    rounded = [Piece(piece.mark, round(piece.length, 1), piece.number, piece.of) for piece in pieces]
+    rounded = [replace(piece, length=round(piece.length, 1)) for piece in pieces]
     fitting = [piece for piece in rounded if _tenths(piece.length) <= _tenths(rules.longest_cut)]
     refused = sorted(set(rounded) - set(fitting), key=lambda piece: (piece.mark, piece.number))
     groups = grouped_pieces(fitting, rules.planks_per_board)
@@ -355,8 +338,6 @@ def cutting_plan(pieces: Iterable[Piece], rules: StockRules) -> CuttingPlan:
         return CuttingPlan((), rules.planks_per_board, 0.0, 0.0, 0.0, tuple(refused))
     wanted = _demand(Counter(_tenths(group[0].length) for group in groups), rules)
     plan, lower, relaxed, usual = _solved(wanted)
-    boards = _boards(wanted, plan, groups, rules)
-    step = wanted.step / 10.0
-    return CuttingPlan(
-        tuple(boards), rules.planks_per_board, lower * step, relaxed * step, usual * step, tuple(refused)
-    )
+    boards, step = _boards(wanted, plan, groups, rules), wanted.step / 10.0
+    bounds = lower * step, relaxed * step, usual * step
+    return CuttingPlan(tuple(boards), rules.planks_per_board, *bounds, tuple(refused))

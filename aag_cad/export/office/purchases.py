@@ -30,12 +30,12 @@ def purchase_row(line: Purchase) -> tuple[str, ...]:
 
 
 def _cut_rows(cut: CutStock) -> Iterator[tuple[str, ...]]:
-    for board in cut.plan.boards:
+    for number, board in enumerate(cut.plan.boards, start=1):
         for place in board.cuts:
             for piece in place.pieces:
                 yield (
                     f"{cut.item} {cut.section}",
-                    str(board.number),
+                    str(number),
                     f"{board.length:g}",
                     f"{place.position:.1f}",
                     f"{place.length:.1f}",
@@ -57,12 +57,11 @@ def cutting_rows(purchases: Purchases) -> Iterator[tuple[str, ...]]:
         yield "old plank", item.old, "", f"{item.start:.1f}", length, item.mark, length, "1/1", ", ".join(notes)
     for cut in purchases.cut:
         yield from _cut_rows(cut)
-    sheets = purchases.sheets
-    for sheet in sheets.sheets:
+    name = f"{purchases.sheet} {purchases.sheets.width:g}"
+    for number, sheet in enumerate(purchases.sheets.sheets, start=1):
         for strip in sheet.strips:
             note = f"across {strip.y:.1f}" + (", turned" if strip.turned else "")
-            name = f"{purchases.sheet} {sheets.width:g}"
-            yield name, str(sheet.number), f"{sheet.length:g}", f"{strip.x:.1f}", "", strip.mark, "", "1/1", note
+            yield name, str(number), f"{sheet.length:g}", f"{strip.x:.1f}", "", strip.mark, "", "1/1", note
 
 
 def write_purchases(purchases: Purchases, path: str | os.PathLike[str]) -> None:

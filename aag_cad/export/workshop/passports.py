@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from aag_cad.files import write_bytes, write_csv, write_text
-from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import short_mark
-from aag_cad.parts.model import Gridshell, Hole, Plank, Timber
+from aag_cad.parts.model import Blank, Gridshell, Hole
 from aag_cad.shop.passports import (
     REUSE_HEADER,
     SERVICE_LIFE_YEARS,
@@ -19,6 +18,7 @@ from aag_cad.shop.passports import (
     Strain,
     passports,
     reuse_row,
+    stock_origin,
     strain_along,
 )
 from aag_cad.typesetting import printout_pdf
@@ -71,24 +71,24 @@ def passports_json(held: Iterable[Passport], gridshell: Gridshell) -> str:
 
 
 def _plain(held: Passport) -> dict[str, Any]:
-    bent = math.isfinite(held.smallest_radius)
+    bent, blank = math.isfinite(held.smallest_radius), held.plank.blank
     twist = deg_per_m(held.largest_twist)
     return {
-        "mark": held.mark,
-        "species": held.species,
-        "strength_class": held.strength_class,
-        "length_mm": round(held.length, 3),
-        "width_mm": held.section.width,
-        "thickness_mm": held.section.thickness,
-        "stock_origin": held.stock_origin,
+        "mark": held.plank.mark,
+        "species": held.timber.species,
+        "strength_class": held.timber.strength_class,
+        "length_mm": round(blank.length, 3),
+        "width_mm": blank.section.width,
+        "thickness_mm": blank.section.thickness,
+        "stock_origin": stock_origin(blank.section),
         "service_life_years": held.service_life_years,
         "smallest_radius_mm": round(held.smallest_radius, 1) if bent else None,
         "smallest_radius_at_mm": round(held.smallest_radius_station, 1) if bent else None,
         "largest_twist_deg_per_m": round(twist, 3),
         "largest_twist_at_mm": round(held.largest_twist_station, 1) if twist >= _NO_TWIST_DEG_PER_M else None,
-        "bending_n_mm2": round(held.bending_stress, 3),
+        "bending_n_mm2": round(held.stress.combined, 3),
         "bending_utilisation": round(held.bending_utilisation, 4),
-        "shear_n_mm2": round(held.shear_stress, 3),
+        "shear_n_mm2": round(held.stress.torsion, 3),
         "shear_utilisation": round(held.shear_utilisation, 4),
         "clear_stretches": [
             {"from_mm": round(each.start, 3), "to_mm": round(each.end, 3), "length_mm": round(each.length, 3)}
@@ -103,17 +103,16 @@ def _plain(held: Passport) -> dict[str, Any]:
                 "use": hole.use,
                 "joint": hole.joint,
             }
-            for hole in held.holes
+            for hole in blank.holes
         ],
     }
 
 
 def passports_pdf(held: Sequence[Passport], gridshell: Gridshell) -> bytes:
     """Return the passports as a booklet of A4 sheets; the same passports give the same bytes."""
-    planks = index_of(gridshell).planks
-    scale = _scale(max((each.length for each in held), default=0.0))
+    scale = _scale(max((each.plank.blank.length for each in held), default=0.0))
     pictures: dict[str, str] = {}
-    cards = [_card(each, planks[each.mark], gridshell.timber, scale, pictures) for each in held]
+    cards = [_card(each, scale, pictures) for each in held]
     data = {
         "title": gridshell.title,
         "radius": f"{gridshell.timber.min_bending_radius / MM_PER_M:g}\u00a0m",
@@ -130,52 +129,52 @@ def _scale(longest: float) -> int:
     return next((n for n in _SCALES if longest / n <= _DRAWING), math.ceil(longest / _DRAWING))
 
 
-def _card(held: Passport, plank: Plank, timber: Timber, scale: int, pictures: dict[str, str]) -> dict[str, Any]:
+def _card(held: Passport, scale: int, pictures: dict[str, str]) -> dict[str, Any]:
     """Return what the card of a passport prints; its pictures are added to ``pictures``."""
-    strain = strain_along(plank, _CHART_SPACING)
-    shares = (strain.bending * timber.min_bending_radius, strain.twist / timber.max_twist)
+    plank, strain = held.plank, strain_along(held.plank, _CHART_SPACING)
+    shares = (strain.bending * held.timber.min_bending_radius, strain.twist / held.timber.max_twist)
     most = max(float(abs(share).max()) for share in shares)
     limit = next((share for share in _SHARES if most <= share), math.ceil(most))
-    pictures[held.mark] = _drawing(held, strain, shares, limit, scale)
-    pictures[f"{held.mark}-qr"] = qr_svg(held.mark)
+    pictures[plank.mark] = _drawing(plank.blank, strain, shares, limit, scale)
+    pictures[f"{plank.mark}-qr"] = qr_svg(plank.mark)
     return {
-        "mark": held.mark,
+        "mark": plank.mark,
         "facts": _facts(held),
-        "holes": _holes(held),
-        "length": held.length / scale,
-        "metres": [MM_PER_M / scale * metre for metre in range(1, int(held.length / MM_PER_M) + 1)],
+        "holes": _holes(plank.blank),
+        "length": plank.blank.length / scale,
+        "metres": [MM_PER_M / scale * metre for metre in range(1, int(plank.blank.length / MM_PER_M) + 1)],
         "limit": f"±{100.0 * limit:.3g} %",
-        "height": held.section.width / _ACROSS,
+        "height": plank.blank.section.width / _ACROSS,
         "chart": _CHART,
     }
 
 
 def _facts(held: Passport) -> list[tuple[str, str]]:
     """Return the lines of a passport: what it is, what it carried, where it is clear."""
-    twist = deg_per_m(held.largest_twist)
+    blank, twist = held.plank.blank, deg_per_m(held.largest_twist)
     twisted = f"{twist:.1f} °/m at {held.largest_twist_station:.0f} mm" if twist >= _NO_TWIST_DEG_PER_M else "nothing"
     radius = f"{held.smallest_radius / MM_PER_M:.2f} m at {held.smallest_radius_station:.0f} mm"
     clear = ", ".join(f"{each.start:.0f}\N{EN DASH}{each.end:.0f} ({each.length:.0f})" for each in held.clear[:3])
     return [
         (
             "plank",
-            f"{held.species} {held.strength_class}, {held.section.thickness:g} x {held.section.width:g} mm, "
-            f"{held.length:.1f} mm long, {len(held.holes)} holes",
+            f"{held.timber.species} {held.timber.strength_class}, {blank.section.thickness:g} x "
+            f"{blank.section.width:g} mm, {blank.length:.1f} mm long, {len(blank.holes)} holes",
         ),
-        ("cut from", held.stock_origin),
+        ("cut from", stock_origin(blank.section)),
         ("planned use", f"{held.service_life_years:g} years in {held.design}"),
         ("bent to radius", radius if math.isfinite(held.smallest_radius) else "straight"),
         ("twisted by", twisted),
-        ("bending", f"{held.bending_stress:.1f} N/mm², {held.bending_utilisation:.2f} of the strength"),
-        ("shear", f"{held.shear_stress:.1f} N/mm², {held.shear_utilisation:.2f} of the strength"),
+        ("bending", f"{held.stress.combined:.1f} N/mm², {held.bending_utilisation:.2f} of the strength"),
+        ("shear", f"{held.stress.torsion:.1f} N/mm², {held.shear_utilisation:.2f} of the strength"),
         ("longest clear", clear),
     ]
 
 
-def _holes(held: Passport) -> list[dict[str, Any]]:
+def _holes(blank: Blank) -> list[dict[str, Any]]:
     """Return the holes by joint, in the order of a tape along the plank."""
     listed: list[dict[str, Any]] = []
-    for hole in held.holes:
+    for hole in blank.holes:
         joint = short_mark(hole.joint)
         slot = f" x {hole.diameter + hole.slot:g}" if hole.slot else ""
         bore = f"{hole.use} ⌀{hole.diameter:g}{slot}"
@@ -186,9 +185,9 @@ def _holes(held: Passport) -> list[dict[str, Any]]:
     return listed
 
 
-def _drawing(held: Passport, strain: Strain, shares: tuple[Floats, Floats], limit: float, scale: int) -> str:
+def _drawing(blank: Blank, strain: Strain, shares: tuple[Floats, Floats], limit: float, scale: int) -> str:
     """Return the blank with its holes and under it the chart of bending and twist, as SVG."""
-    length, width = UNITS_PER_MM * held.length / scale, UNITS_PER_MM * held.section.width / _ACROSS
+    length, width = UNITS_PER_MM * blank.length / scale, UNITS_PER_MM * blank.section.width / _ACROSS
     chart, top = UNITS_PER_MM * _CHART, width + UNITS_PER_MM * _GAP
     zero = top + chart / 2.0
     along = UNITS_PER_MM * strain.stations / scale
@@ -196,7 +195,7 @@ def _drawing(held: Passport, strain: Strain, shares: tuple[Floats, Floats], limi
     axis = np.array([(0.0, zero), (length, zero)])
     items = (
         group([rectangle(1.0, 1.0, length - 2.0, width - 2.0)], _EDGE),
-        group((_bore(hole, width, scale) for hole in held.holes), _BORE),
+        group((_bore(hole, width, scale) for hole in blank.holes), _BORE),
         polygon(np.concatenate([axis[:1], bending, axis[1:]]), _BENDING),
         line(twist, _TWIST),
         line(axis, _FRAME),
