@@ -2,7 +2,7 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -48,6 +48,10 @@ from aag_cad.parts.twins import renamed
 from aag_cad.units import Floats, vector
 
 _T = TypeVar("_T")
+# What the first shell gets once its structure stands, in this order: each gives the shell with parts and joints more.
+ADDITIONS: list[Callable[[Design, CurveNetwork, Shell], Shell]] = [
+    lambda design, network, shell: covered(shell, placed_facade(design, network, shell)),
+]
 
 
 def _numbered(network: CurveNetwork, shell: int) -> list[tuple[Mark, Crossing]]:
@@ -185,7 +189,9 @@ def _shell(design: Design, network: CurveNetwork) -> tuple[Shell, list[BladeJoin
         joints=tuple(b.joint for b in built),
         **_by_field([*planks, *parts]),
     )
-    return covered(shell, placed_facade(design, network, shell)), blades
+    for added in ADDITIONS:
+        shell = added(design, network, shell)
+    return shell, blades
 
 
 def _copy_of(value: _T, index: int, count: int) -> _T:
