@@ -25,26 +25,30 @@ Look: TypeAlias = Literal[
     "passports",
 ]  # fmt: skip
 CardTable: TypeAlias = Literal["", "beams", "laid", "control", "bolts", "feet", "slings", "taken", "measured"]
-Shown: TypeAlias = Literal["chapter", "moved shell", "site"]
+SceneKind: TypeAlias = Literal[
+    "made", "laid", "slid", "studs", "hoisted", "edges", "screws", "whole", "cover", "propped", "lifted", "hung",
+    "lowered", "measured", "site",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
 class PhaseRow:
     """What there is to know about a phase.
 
-    ``look``: how it is painted in the schedule. ``shown``: whether its pictures show the shell of its chapter, the
-    shell that it moves, or the site. ``table``: which table its card has, with the parts in it if ``listed``.
-    ``handled``: the joints whose fasteners it puts in, sets or tightens. ``fastens``: these hold planks at their joints
-    (not blocks, studs or the cover). ``tightens``: its own bolts are tightened at once. ``gone_over``: the joints of
-    the shell whose bolts are gone over, tightening or loosening them. ``once``: the key of ``Minutes`` that counts once
-    for it, and ``undone`` the one that is taken back. ``each_held``: every step of it ends with a check, else the
-    last. ``unbroken``: a shell in slings is not left for the night. ``stays``: the assemblies that it works on stay
-    where they are. ``lifts``: its tools lift already. ``propped``: the shell stands on props in it.
+    ``look``: how it is painted in the schedule; ``scene``: what its large picture shows; ``alone``: it shows alone the
+    shell that the step moves. ``table``: which table its card has, with the parts in it if ``listed``. ``handled``: the
+    joints whose fasteners it puts in, sets or tightens. ``fastens``: these hold planks at their joints (not blocks,
+    studs or the cover). ``tightens``: its own bolts are tightened at once. ``gone_over``: the joints of the shell whose
+    bolts are gone over, tightening or loosening them. ``once``: the key of ``Minutes`` that counts once for it, and
+    ``undone`` the one that is taken back. ``each_held``: every step of it ends with a check, else the last.
+    ``unbroken``: a shell in slings is not left for the night. ``stays``: the assemblies that it works on stay where
+    they are. ``lifts``: its tools lift already. ``propped``: the shell stands on props in it.
     """
 
     look: Look
-    shown: Shown = "chapter"
+    scene: SceneKind
     table: CardTable = ""
+    alone: bool = False
     listed: bool = False
     handled: tuple[JointKind, ...] = ()
     fastens: bool = False
@@ -62,19 +66,19 @@ class PhaseRow:
 _SHELL: tuple[JointKind, ...] = ("AA", "AG", "boundary", "ridge")
 
 PHASE: dict[Phase, PhaseRow] = {
-    "prefabricate": PhaseRow("make", table="beams", handled=("AG", "boundary"), tightens=True),
-    "lay A1": PhaseRow("lay", table="laid", listed=True),
-    "lay G": PhaseRow("lay", table="laid", listed=True),
-    "lay A2": PhaseRow("lay", table="laid", listed=True),
-    "lay": PhaseRow("lay", table="laid", listed=True),
-    "slide": PhaseRow("lay", table="laid", listed=True, once="slide"),
-    "join": PhaseRow("studs"),
-    "studs": PhaseRow("studs", handled=("AA",), fastens=True),
-    "hoist": PhaseRow("hoist", table="control", once="hoist", each_held=True, unbroken=True, lifts=True),
-    "edge planks": PhaseRow("edges", handled=("boundary", "ridge"), fastens=True),
-    "fix geodesics": PhaseRow("fix", handled=("AG",), fastens=True),
-    "tighten": PhaseRow("tighten", table="bolts", handled=_SHELL, gone_over=_SHELL),
-    "divide": PhaseRow("splices", handled=("AG",), unbroken=True, lifts=True),
+    "prefabricate": PhaseRow("make", "made", table="beams", handled=("AG", "boundary"), tightens=True),
+    "lay A1": PhaseRow("lay", "laid", table="laid", listed=True),
+    "lay G": PhaseRow("lay", "laid", table="laid", listed=True),
+    "lay A2": PhaseRow("lay", "laid", table="laid", listed=True),
+    "lay": PhaseRow("lay", "laid", table="laid", listed=True),
+    "slide": PhaseRow("lay", "slid", table="laid", listed=True, once="slide"),
+    "join": PhaseRow("studs", "whole"),
+    "studs": PhaseRow("studs", "studs", handled=("AA",), fastens=True),
+    "hoist": PhaseRow("hoist", "hoisted", table="control", once="hoist", each_held=True, unbroken=True, lifts=True),
+    "edge planks": PhaseRow("edges", "edges", handled=("boundary", "ridge"), fastens=True),
+    "fix geodesics": PhaseRow("fix", "screws", handled=("AG",), fastens=True),
+    "tighten": PhaseRow("tighten", "whole", table="bolts", handled=_SHELL, gone_over=_SHELL),
+    "divide": PhaseRow("splices", "whole", handled=("AG",), unbroken=True, lifts=True),
     "feet": PhaseRow("feet", "site", "feet", handled=("footing",)),
     "stand": PhaseRow(
         "stand", "site", handled=("foot", "footing"), fastens=True, tightens=True, once="stand", each_held=True,
@@ -84,28 +88,28 @@ PHASE: dict[Phase, PhaseRow] = {
     "ridges": PhaseRow(
         "ridges", "site", handled=("blade",), fastens=True, tightens=True, once="ridge", unbroken=True, stays=True
     ),
-    "cover": PhaseRow("cover", "moved shell", handled=("cover",)),
-    "uncover": PhaseRow("cover", "moved shell"),
-    "prop": PhaseRow("feet", "moved shell", once="prop", each_held=True, stays=True, propped=True),
+    "cover": PhaseRow("cover", "cover", alone=True, handled=("cover",)),
+    "uncover": PhaseRow("cover", "cover", alone=True),
+    "prop": PhaseRow("feet", "propped", alone=True, once="prop", each_held=True, stays=True, propped=True),
     "open ridges": PhaseRow("ridges", "site", fastens=True, undone="ridge", unbroken=True, stays=True, propped=True),
     "lift off": PhaseRow(
-        "stand", "moved shell", "slings", fastens=True, once="stand", each_held=True, unbroken=True, lifts=True,
+        "stand", "lifted", "slings", alone=True, fastens=True, once="stand", each_held=True, unbroken=True, lifts=True,
         propped=True,
     ),
     "clear feet": PhaseRow("feet", "site", lifts=True),
     "hang": PhaseRow(
-        "hoist", table="slings", undone="hoist", each_held=True, unbroken=True, lifts=True, propped=True
+        "hoist", "hung", table="slings", undone="hoist", each_held=True, unbroken=True, lifts=True, propped=True
     ),
-    "release geodesics": PhaseRow("fix", fastens=True, propped=True),
-    "pull edge planks": PhaseRow("edges", fastens=True, propped=True),
+    "release geodesics": PhaseRow("fix", "screws", fastens=True, propped=True),
+    "pull edge planks": PhaseRow("edges", "edges", fastens=True, propped=True),
     "lower": PhaseRow(
-        "hoist", gone_over=("AA",), once="lower", each_held=True, unbroken=True, lifts=True, propped=True
+        "hoist", "lowered", gone_over=("AA",), once="lower", each_held=True, unbroken=True, lifts=True, propped=True
     ),
-    "take off beams": PhaseRow("lay", table="taken"),
-    "take off geodesics": PhaseRow("lay", table="taken", listed=True),
-    "pull studs": PhaseRow("studs"),
-    "unbolt": PhaseRow("make"),
-    "passports": PhaseRow("passports", table="measured"),
+    "take off beams": PhaseRow("lay", "laid", table="taken"),
+    "take off geodesics": PhaseRow("lay", "laid", table="taken", listed=True),
+    "pull studs": PhaseRow("studs", "made"),
+    "unbolt": PhaseRow("make", "made"),
+    "passports": PhaseRow("passports", "measured", table="measured"),
 }  # fmt: skip
 
 
