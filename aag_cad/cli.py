@@ -222,7 +222,7 @@ def plan(
     source: Annotated[
         str,
         typer.Argument(
-            metavar="DESIGN|gridshell.json|graph.json",
+            metavar="DESIGN|gridshell.json|graph.json|graph.graphml",
             help="a design, a gridshell that a build wrote, or any graph of parts (shipped: kagome, impossible)",
         ),
     ],

@@ -24,7 +24,7 @@ from assembly.base.segments import Limits
 from assembly.base.steps import Plan
 from assembly.booklet.plan_file import PlanFile, graph_pieces, gridshell_pieces, plan_file, read_plan
 from assembly.checks.findings import disassembly_faults, graph_plan_faults, plan_faults
-from assembly.graph.files import graph_text, read_graph, shipped_graphs
+from assembly.graph.files import graph_text, read_graph, read_graphml, shipped_graphs
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.plan.explain import explanation
 from assembly.plan.graph_plan import graph_durations, graph_plan
@@ -33,6 +33,7 @@ from assembly.plan.schedule import Schedule, schedule_of
 
 # For what names no crew: four people who lift 25 kg each (EN 1005-2, the mass that most adults may lift).
 FOUR = Crew.model_validate({"people": 4, "lift_limit": 25.0})
+_GRAPHML = (".graphml", ".xml")
 STAGES = 2 + len(PLAN_WRITERS)
 
 
@@ -79,14 +80,15 @@ def read_source(source: str, people: int | None = None, limits: Limits | None = 
     ``people`` and ``limits`` stand in place of the crew and the transport of the design. FileError, DesignError or
     PlanError where the source cannot be read.
     """
-    if source in shipped_graphs() or source.lower().endswith(".json"):
+    ending, crew = Path(source).suffix.lower(), _crew_with(FOUR, people)
+    if source in shipped_graphs() or ending in (".json", *_GRAPHML):
         text = graph_text(source) if source in shipped_graphs() else read_text(source)
-        crew, keys = _crew_with(FOUR, people), _keys(text, source)
+        keys = {"graphml"} if ending in _GRAPHML else _keys(text, source)
         if "shells" in keys:
             gridshell = read_gridshell(text)
             return Source(gridshell.name, crew, limits or NO_LIMITS, gridshell=gridshell)
-        if "nodes" in keys:
-            graph = read_graph(text)
+        if keys & {"nodes", "graphml"}:
+            graph = read_graphml(text) if "graphml" in keys else read_graph(text)
             return Source(Path(source).stem, crew, limits or NO_LIMITS, graph=graph)
         raise FileError(f"{source}: neither a gridshell (key shells) nor a graph of parts (keys nodes and edges)")
     design = load_design(source)

@@ -181,6 +181,17 @@ def kind_of(part: Part) -> Kind[Any, Any]:
     return KINDS[type(part)]
 
 
+def kind_named(word: str) -> Kind[Any, Any] | None:
+    """Return the row of a kind by the word for it in part lists, as graphs of parts have it; None for other words."""
+    return next((row for row in KINDS.values() if row.name == word), None)
+
+
+def is_fastener(word: str) -> bool:
+    """Return whether a kind, given by the word for it, only holds others together."""
+    row = kind_named(word)
+    return row is not None and row.role == "fastener"
+
+
 def shaped(part: Part) -> tuple[Shape[Any], Any]:
     """Return the shape of a part, and what the part is to it."""
     row = KINDS[type(part)]

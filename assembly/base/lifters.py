@@ -2,14 +2,13 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from aag_cad.errors import MarkError
 from aag_cad.findings import Finding
 from aag_cad.language import text
 from assembly.base.errors import PlanError
-from assembly.base.mark_ranges import joined_ranges
+from assembly.base.mark_ranges import named_marks
 
 LONG_PIECE = 3000.0
 
@@ -44,14 +43,6 @@ def hands_for(lifters: Lifters, mass_kg: float, length_mm: float) -> Hands:
     """Return the hands for the heaviest and the longest piece of a step; a piece over 3 m takes two people."""
     needed = max(math.ceil(mass_kg / lifters.lift_limit), 2 if length_mm > LONG_PIECE else 1)
     return Hands(min(needed, lifters.people), mass_kg > lifters.people * lifters.lift_limit)
-
-
-def named_marks(marks: Sequence[str]) -> str:
-    """Return marks as one text: in ranges if they are those of a gridshell, and else as they are."""
-    try:
-        return joined_ranges(marks)
-    except MarkError:
-        return ", ".join(marks)
 
 
 def lifting_findings(weights: Mapping[str, tuple[float, float]], lifters: Lifters) -> tuple[Finding, ...]:

@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 
+from aag_cad.errors import MarkError
 from aag_cad.parts.marks import Mark, parse_mark, short_mark
 
 _PAIR = 2
@@ -45,3 +46,11 @@ def mark_ranges(marks: Sequence[str]) -> tuple[str, ...]:
 def joined_ranges(marks: Sequence[str]) -> str:
     """Return the ranges of marks as one text."""
     return ", ".join(mark_ranges(marks))
+
+
+def named_marks(marks: Sequence[str]) -> str:
+    """Return marks as one text: in ranges if they are those of a gridshell, and else as they are."""
+    try:
+        return joined_ranges(marks)
+    except MarkError:
+        return ", ".join(marks)

@@ -43,6 +43,6 @@ def disassembly_faults(plan: Plan, gridshell: Gridshell) -> tuple[Finding, ...]:
     return tuple(_findings("AAG982", check_disassembly(plan, gridshell)))
 
 
-def graph_plan_faults(plan: Plan, graph: "nx.MultiGraph[str]", people: int) -> tuple[Finding, ...]:
+def graph_plan_faults(plan: Plan, graph: "nx.Graph[str]", people: int) -> tuple[Finding, ...]:
     """Return what is wrong with the plan of any graph of parts, as AAG983; see ``check_graph_plan``."""
     return tuple(_findings("AAG983", check_graph_plan(plan, graph, people)))

@@ -6,9 +6,9 @@ from typing import Any
 
 import networkx as nx
 
+from aag_cad.parts.kinds import is_fastener
+from assembly.base.any_graph import as_multigraph
 from assembly.base.steps import Plan
-
-_HOLDING = ("bolt", "screw", "threaded rod")
 
 
 def _nodes(graph: "nx.MultiGraph[str]") -> Mapping[str, Mapping[str, Any]]:
@@ -30,9 +30,9 @@ def _once(plan: Plan, graph: "nx.MultiGraph[str]") -> Iterator[str]:
             elif mark in seen:
                 yield f"{mark}: added by step {seen[mark]} and again by step {step.id}"
             seen[mark] = step.id
-    excused = {mark for finding in plan.findings if finding.severity == "error" for mark in finding.mark.split(", ")}
+    named = "".join(f", {finding.mark}, " for finding in plan.findings if finding.severity == "error")
     for mark in sorted(set(graph) - set(seen)):
-        if mark not in excused and _nodes(graph)[mark].get("beam") not in excused:
+        if not any(f", {name}, " in named for name in (mark, _nodes(graph)[mark].get("beam") or mark)):
             yield f"{mark}: in no step, and no finding says why"
 
 
@@ -77,11 +77,13 @@ def _unheld(plan: Plan, graph: "nx.MultiGraph[str]", bits: dict[str, int], befor
     for step in plan.steps:
         done = before[step.id] | bits[step.id]
         for mark in (mark for mark in step.marks if mark in graph and not _flat(_nodes(graph)[mark])):
-            home, holding = _nodes(graph)[mark].get("beam"), _nodes(graph)[mark]["kind"] in _HOLDING
+            home, fastens = _nodes(graph)[mark].get("beam"), is_fastener(_nodes(graph)[mark]["kind"])
             for other in sorted(graph[mark]):
                 node = _nodes(graph)[other]
                 # What is put together with a beam is fixed to that beam; the others come to it.
-                needed = node.get("beam") == home if home else _flat(node) or (holding and node["kind"] not in _HOLDING)
+                needed = (
+                    node.get("beam") == home if home else _flat(node) or (fastens and not is_fastener(node["kind"]))
+                )
                 if needed and (other not in step_of or not bits[step_of[other].id] & done):
                     yield f"{mark}: step {step.id} puts it in before {other} is there"
 
@@ -102,19 +104,20 @@ def _blocked(plan: Plan, graph: "nx.MultiGraph[str]", bits: dict[str, int], befo
                         yield f"{mark}: slid in by step {step.id}, but step {earlier} may fasten {other} by {fastener}"
 
 
-def check_graph_plan(plan: Plan, graph: "nx.MultiGraph[str]", people: int | None = None) -> list[str]:
-    """Return what is wrong with the plan of a graph; nothing if it can be done as it stands, also side by side.
+def check_graph_plan(plan: Plan, graph: "nx.Graph[str]", people: int | None = None) -> list[str]:
+    """Return what is wrong with the plan of any graph; nothing if it can be done as it stands, also side by side.
 
     Each part once; no step before what it waits for; no plank under one that lies unless it is slid in; nothing put in
     before the planks that it is tied to; the planks on the way of a slide loose; crews of 1 to ``people``.
     """
+    several = as_multigraph(graph)
     bits, before, faults = _ancestors(plan)
-    faults += _once(plan, graph)
+    faults += _once(plan, several)
     if faults:
         return faults
-    faults += _buried(plan, graph, bits, before)
-    faults += _unheld(plan, graph, bits, before)
-    faults += _blocked(plan, graph, bits, before)
+    faults += _buried(plan, several, bits, before)
+    faults += _unheld(plan, several, bits, before)
+    faults += _blocked(plan, several, bits, before)
     for step in plan.steps:
         if step.crew < 1 or (people is not None and step.crew > people):
             faults.append(f"step {step.id}: {step.crew} people, allowed 1 to {people or 'any'}")

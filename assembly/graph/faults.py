@@ -15,7 +15,9 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias, TypeGuard, get_args
 
 import networkx as nx
+import numpy as np
 
+from assembly.base.any_graph import as_multigraph
 from assembly.base.errors import PlanError
 from assembly.graph.laying_units import is_laid, upper_of
 
@@ -48,8 +50,13 @@ def _number(value: Any) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _point(value: Any) -> bool:
-    return isinstance(value, tuple | list) and len(value) == 3 and all(_number(x) for x in value)
+def is_point(value: Any) -> bool:
+    """Return whether a value is a point in space, mm."""
+    return isinstance(value, tuple | list | np.ndarray) and len(value) == 3 and all(map(_number, value))
+
+
+def _same(start: Any, end: Any) -> bool:
+    return is_point(start) and is_point(end) and tuple(start) == tuple(end)
 
 
 _TEXT: _Rule = (lambda value: isinstance(value, str) and value.isprintable(), "a text in one line")
@@ -58,7 +65,7 @@ _NAME: _Rule = (
     "a text that is not empty",
 )
 _TRUTH: _Rule = (lambda value: isinstance(value, bool), "true or false")
-_PLACE: _Rule = (_point, "three finite numbers, mm")
+_PLACE: _Rule = (is_point, "three finite numbers, mm")
 _POSITIVE: _Rule = (lambda value: _number(value) and value > 0, "a finite number above 0")
 _NOT_NEGATIVE: _Rule = (lambda value: _number(value) and value >= 0, "a finite number, 0 or more")
 _FINITE: _Rule = (_number, "a finite number, mm")
@@ -71,7 +78,7 @@ _LAYER: _Rule = (
 _NODE: Mapping[str, _Rule] = {
     "kind": _NAME, "family": _TEXT, "shell": _TEXT, "beam": _TEXT, "layer": _LAYER, "mass_kg": _NOT_NEGATIVE,
     "length_mm": _POSITIVE, "position": _PLACE, "start": _PLACE, "end": _PLACE, "upright": _TRUTH,
-    "depth_mm": _POSITIVE, "min_radius_mm": _POSITIVE, "slides": _TRUTH,
+    "width_mm": _POSITIVE, "depth_mm": _POSITIVE, "min_radius_mm": _POSITIVE, "slides": _TRUTH,
 }  # fmt: skip
 _EDGE: Mapping[str, _Rule] = {
     "kind": (lambda value: value in EDGE_KINDS, ", ".join(EDGE_KINDS)),
@@ -117,7 +124,7 @@ def _node(mark: object, values: Mapping[str, Any], laid: bool) -> Iterator[Graph
     yield from _wrong(str(mark), values, needed, _NODE)
     if not _NAME[0](mark):
         yield GraphProblem(repr(mark), "mark", repr(mark), _NAME[1], "name the node by a text")
-    elif "start" in values and values["start"] == values.get("end"):
+    elif "start" in values and _same(values["start"], values.get("end")):
         found = repr(values["end"])
         yield GraphProblem(str(mark), "end", found, "another point than start", "give both ends of the line")
 
@@ -144,9 +151,10 @@ def _problems(graph: "nx.MultiGraph[str]", edges: list[_Edge], laid_only: bool) 
     return tuple(problem for _, problem in sorted(found, key=lambda pair: pair[0]))
 
 
-def graph_problems(graph: "nx.MultiGraph[str]") -> tuple[GraphProblem, ...]:
-    """Return every fault of a graph by its nodes, then its edges, each in the order of their marks."""
-    return _problems(graph, list(graph.edges(keys=True, data=True)), laid_only=False)
+def graph_problems(graph: "nx.Graph[str]") -> tuple[GraphProblem, ...]:
+    """Return every fault of any networkx graph by its nodes, then its edges, each in the order of their marks."""
+    several = as_multigraph(graph)
+    return _problems(several, list(several.edges(keys=True, data=True)), laid_only=False)
 
 
 def refuse(problems: tuple[GraphProblem, ...]) -> None:

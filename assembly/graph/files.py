@@ -2,80 +2,25 @@
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, cast
 from xml.etree.ElementTree import ParseError
 
 import networkx as nx
 
 from aag_cad.resources import shipped_names, shipped_text
+from assembly.base.any_graph import add_joint, as_multigraph
 from assembly.base.errors import PlanError
-from assembly.graph.faults import GraphProblem, graph_problems, refuse
-from assembly.graph.laying_units import is_laid, joint_name
+from assembly.graph.faults import GraphProblem, graph_problems, is_point, refuse
+from assembly.graph.whole import POINTS, Attributes, completed, free_key, in_our_types, whole_graph
 
 SCHEMA_VERSION = 1
 
-Attributes: TypeAlias = dict[str, Any]
 # Marks of both ends, key (None where the file gives none) and attributes.
 _Edge: TypeAlias = tuple[str, str, str | None, Attributes]
 
-_POINTS = ("position", "start", "end")
-_NUMBERS = ("mass_kg", "length_mm", "depth_mm", "min_radius_mm", "below_mm", "above_mm")
 _AXES = ("x", "y", "z")
 # GraphML as networkx reads it drops empty texts, and ``above`` is empty where two planks meet end to end.
 _MEETS = "meets"
-
-
-def _in_our_types(values: Mapping[str, Any]) -> Attributes:
-    """Return attributes with points as tuples and whole numbers as floats where they stand for lengths or masses."""
-    read = dict(values)
-    for name in _POINTS:
-        if isinstance(read.get(name), list | tuple):
-            read[name] = tuple(float(x) if type(x) is int else x for x in read[name])
-    for name in _NUMBERS:
-        if type(read.get(name)) is int:
-            read[name] = float(read[name])
-    return read
-
-
-def _free_key(graph: "nx.MultiGraph[str]", a: str, b: str, keys: Iterable[str]) -> str | None:
-    """Return the first of some keys that no edge between two nodes has, or None."""
-    return next((key for key in keys if not graph.has_edge(a, b, key)), None)
-
-
-def _add(graph: "nx.MultiGraph[str]", a: str, b: str, key: str | None, values: Attributes) -> None:
-    # Not as keywords: others may have attributes of the names of the parameters.
-    new = graph.add_edge(a, b, key)
-    graph.edges[a, b, new].update(values)
-
-
-def _completed(graph: "nx.MultiGraph[str]") -> "nx.MultiGraph[str]":
-    """Return a faultless graph with its defaults, sorted; edges without a key get their joint's mark, or more of it."""
-    full: nx.MultiGraph[str] = nx.MultiGraph(name=str(graph.graph.get("name", "")))
-    for mark in sorted(graph):
-        node: Attributes = {"family": "", "shell": "", "beam": "", "layer": None} | _in_our_types(graph.nodes[mark])
-        if is_laid(node):
-            middle = tuple((a + b) / 2.0 for a, b in zip(node["start"], node["end"], strict=True))
-            node = {"position": middle, "upright": False, **node}
-        full.add_node(mark)
-        full.nodes[mark].update(node)
-    edges = ((*sorted((a, b)), key, values) for a, b, key, values in graph.edges(keys=True, data=True))
-    for a, b, key, values in sorted(edges, key=lambda edge: (*edge[:2], not isinstance(edge[2], str), str(edge[2]))):
-        joint = joint_name(a, b, key, values)
-        kind = f"{joint} {values['kind']}"
-        keys = [key] if isinstance(key, str) else [joint, kind, f"{kind} {key}"]
-        edge = {"joint_kind": ""} | _in_our_types(values) | {"joint": joint}
-        _add(full, a, b, _free_key(full, a, b, keys), edge)
-    return full
-
-
-def with_defaults(graph: "nx.Graph[str]") -> "nx.MultiGraph[str]":
-    """Return a graph with the documented defaults filled in, its nodes and edges sorted, its edges keyed by joint.
-
-    Any undirected networkx graph. PlanError with what is wrong with it.
-    """
-    several: nx.MultiGraph[str] = graph if isinstance(graph, nx.MultiGraph) else nx.MultiGraph(graph)
-    refuse(graph_problems(several))
-    return _completed(several)
 
 
 def _plain(where: str, values: Mapping[str, Any]) -> Attributes:
@@ -83,7 +28,7 @@ def _plain(where: str, values: Mapping[str, Any]) -> Attributes:
     plain: Attributes = {}
     for name in sorted(values):
         value = values[name]
-        if name in _POINTS:
+        if name in POINTS and is_point(value):
             value = list(value)
         elif not (value is None or isinstance(value, str | bool | int | float)):
             raise PlanError(f"{where}: {name} {value!r}; give it as text, number, true or false")
@@ -106,15 +51,15 @@ def _lines(items: Iterable[Attributes]) -> str:
     return ",\n".join(json.dumps(item, ensure_ascii=False, allow_nan=False) for item in items)
 
 
-def graph_json(graph: "nx.MultiGraph[str]") -> str:
-    """Return a graph as JSON: schema_version, name, nodes (``mark`` and attributes), edges (``a``, ``b``, attributes).
+def graph_json(graph: "nx.Graph[str]") -> str:
+    """Return any graph as JSON: schema_version, name, nodes (``mark``, attributes), edges (``a``, ``b``, attributes).
 
     Nodes by mark, edges by their marks, one a line; every number with all its digits. PlanError if it has faults.
     """
-    refuse(graph_problems(graph))
-    nodes = _lines({"mark": mark} | _plain(mark, graph.nodes[mark]) for mark in sorted(graph))
-    edges = _lines({"a": a, "b": b} | values for a, b, _, values in _edges(graph))
-    name = json.dumps(str(graph.graph.get("name", "")), ensure_ascii=False)
+    whole = whole_graph(graph)
+    nodes = _lines({"mark": mark} | _plain(mark, whole.nodes[mark]) for mark in whole)
+    edges = _lines({"a": a, "b": b} | values for a, b, _, values in _edges(whole))
+    name = json.dumps(str(whole.name), ensure_ascii=False)
     return f'{{"schema_version":{SCHEMA_VERSION},"name":{name},"nodes":[\n{nodes}\n],"edges":[\n{edges}\n]}}\n'
 
 
@@ -126,8 +71,7 @@ def _assembled(name: str, nodes: Iterable[tuple[str, Attributes]], edges: Iterab
         if mark in graph:
             remedy = "give one of the two another mark"
             problems.append(GraphProblem(mark, "mark", repr(mark), "each mark once", remedy))
-        graph.add_node(mark)
-        graph.nodes[mark].update(_in_our_types(values))
+        graph.add_nodes_from([(mark, in_our_types(values))])
     for a, b, key, values in edges:
         where, joint = f"edge {a} - {b}", values.get("joint")
         strangers = [mark for mark in (a, b) if mark not in graph]
@@ -136,14 +80,14 @@ def _assembled(name: str, nodes: Iterable[tuple[str, Attributes]], edges: Iterab
             for mark in strangers
         ]
         keys = [key] if key else [joint, f"{joint} {values.get('kind')}"] if isinstance(joint, str) and joint else []
-        free = _free_key(graph, a, b, keys)
+        free = free_key(graph, a, b, keys)
         if keys and free is None:
             remedy = "give the second one another joint or key"
             problems.append(GraphProblem(where, "joint", repr(keys[0]), "each once", remedy))
         elif not strangers:
-            _add(graph, a, b, free, _in_our_types(values))
+            add_joint(graph, a, b, free, in_our_types(values))
     refuse((*problems, *graph_problems(graph)))
-    return _completed(graph)
+    return completed(graph)
 
 
 def _items(data: Attributes, name: str, marks: tuple[str, ...]) -> list[Attributes]:
@@ -180,7 +124,7 @@ def _split(where: str, values: Mapping[str, Any]) -> Attributes:
     """Return attributes as GraphML can hold them: points as three numbers, nothing that is none or empty."""
     flat: Attributes = {}
     for name, value in _plain(where, values).items():
-        if name in _POINTS:
+        if isinstance(value, list):
             flat |= {f"{name}_{axis}": x for axis, x in zip(_AXES, value, strict=True)}
         elif name == "above" and value == "":
             flat[_MEETS] = True
@@ -192,7 +136,7 @@ def _split(where: str, values: Mapping[str, Any]) -> Attributes:
 def _joined(values: Mapping[str, Any]) -> Attributes:
     """Return attributes of GraphML with their points put together again."""
     joined = dict(values)
-    for name in _POINTS:
+    for name in POINTS:
         axes = [f"{name}_{axis}" for axis in _AXES]
         if all(axis in joined for axis in axes):
             joined[name] = tuple(joined.pop(axis) for axis in axes)
@@ -201,16 +145,15 @@ def _joined(values: Mapping[str, Any]) -> Attributes:
     return joined
 
 
-def graphml(graph: "nx.MultiGraph[str]") -> str:
-    """Return a graph as GraphML; points are split into ``start_x``, ``start_y``, ``start_z`` and so on, mm.
+def graphml(graph: "nx.Graph[str]") -> str:
+    """Return any graph as GraphML; points are split into ``start_x``, ``start_y``, ``start_z`` and so on, mm.
 
     Of what others added, attributes that are empty or none are left out. PlanError if it has faults.
     """
-    refuse(graph_problems(graph))
-    flat: nx.MultiGraph[str] = nx.MultiGraph(name=str(graph.graph.get("name", "")))
-    for mark in sorted(graph):
-        flat.add_node(mark, **_split(mark, graph.nodes[mark]))
-    for i, (a, b, _, values) in enumerate(_edges(graph), start=1):
+    whole = whole_graph(graph)
+    flat: nx.MultiGraph[str] = nx.MultiGraph(name=str(whole.name))
+    flat.add_nodes_from((mark, _split(mark, whole.nodes[mark])) for mark in whole)
+    for i, (a, b, _, values) in enumerate(_edges(whole), start=1):
         attributes = {("joint_key" if name == "key" else name): value for name, value in values.items()}
         flat.add_edge(a, b, **_split("", attributes), key=f"e{i}")
     return "\n".join(nx.generate_graphml(flat)) + "\n"
@@ -219,14 +162,17 @@ def graphml(graph: "nx.MultiGraph[str]") -> str:
 def read_graphml(text: str) -> "nx.MultiGraph[str]":
     """Return the graph in a GraphML text, its defaults filled in; PlanError that lists the first faults of all."""
     try:
-        found = nx.parse_graphml(text, node_type=str, force_multigraph=True)
+        read = cast("nx.MultiGraph[str]", nx.parse_graphml(text, node_type=str, force_multigraph=True))
     except (nx.NetworkXError, ParseError, ValueError, KeyError) as error:
         raise PlanError(f"graph: not valid GraphML: {error}") from error
+    for _, _, values in read.edges(data=True):
+        # Before a direction may say who lies above: where they meet, nobody does.
+        joined = _joined(values)
+        values.clear()
+        values.update(joined)
+    found = as_multigraph(read)
     nodes = [(mark, _joined(values)) for mark, values in found.nodes(data=True)]
-    edges = [
-        (a, b, joined.pop("joint_key", None), joined)
-        for a, b, joined in ((a, b, _joined(values)) for a, b, values in found.edges(data=True))
-    ]
+    edges = [(a, b, values.pop("joint_key", None), values) for a, b, values in found.edges(data=True)]
     return _assembled(str(found.graph.get("name", "")), nodes, edges)
 
 

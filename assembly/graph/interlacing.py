@@ -10,6 +10,7 @@ import networkx as nx
 from aag_cad.families import EDGES
 from aag_cad.findings import Finding
 from aag_cad.language import Text, text
+from assembly.base.any_graph import as_multigraph
 from assembly.base.errors import PlanError
 from assembly.graph.circles import circle_links, few_out, knots, part_of, relations
 from assembly.graph.faults import refuse_unlayable
@@ -105,18 +106,19 @@ def _finding(knot: "nx.DiGraph[str]", found: Mapping[str, Sliding]) -> Finding:
     return Finding("AAG951", "error", ", ".join(knot), what, 0.0, 1.0, "", text("graph.interlacing.remedy"))
 
 
-def interlacing(graph: "nx.MultiGraph[str]", later: Collection[str] | None = None) -> Interlacing:
+def interlacing(graph: "nx.Graph[str]", later: Collection[str] | None = None) -> Interlacing:
     """Return the order of laying the units of a graph and the slides that it needs; see ``docs/interlacing.md``.
 
-    The graph is that of a gridshell, of one of its shells or any other with the attributes of
+    The graph is that of a gridshell, of one of its shells or any other networkx graph with the attributes of
     ``assembly.graph.faults``; PlanError with its faults if it lacks them. ``later`` are units that do not lie on the
     floor yet and so are in nobody's way, edge planks (family E) if it is None. A circle that no slide resolves is an
     AAG951 in ``findings``.
     """
-    refuse_unlayable(graph)
-    units = units_of(graph)
+    several = as_multigraph(graph)
+    refuse_unlayable(several)
+    units = units_of(several)
     absent = {mark for mark, unit in units.items() if unit.family in EDGES} if later is None else set(later)
-    overlaps, meetings = overlaps_of(graph)
+    overlaps, meetings = overlaps_of(several)
     lying = relations(units, overlaps)
     tied = {mark for knot in knots(lying) for mark in knot}
     found = slidings(sorted(tied), units, overlaps, meetings, absent)

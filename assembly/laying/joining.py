@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import networkx as nx
 import numpy as np
 
+from aag_cad.parts.kinds import is_fastener
 from aag_cad.parts.model import JointKind
 from aag_cad.units import Floats, Vector
 from assembly.base.errors import PlanError
@@ -14,8 +15,6 @@ from assembly.graph.laying_units import Overlap, Unit, joint_name
 from assembly.laying.order import graph_floor, walking_rows
 from assembly.laying.walking import Point
 
-# What only holds others together; it goes in last. All else is set at the first of its joints.
-FASTENERS = ("bolt", "screw", "threaded rod")
 # What stands under a shoe comes before what the shoe holds.
 _KINDS: tuple[JointKind, ...] = ("AA", "AG", "boundary", "ridge", "footing", "foot", "blade", "cover")
 _ORDER: dict[str, int] = {kind: i for i, kind in enumerate(_KINDS)}
@@ -112,7 +111,8 @@ def joinings(
     ``placed`` gives the unit of each part that is laid, blocks and bolts of beams too. Where a unit is left out, what
     ties it to others cannot be put in. PlanError with the marks of parts that no edge ties to anything.
     """
-    loose = {mark: graph.nodes[mark]["kind"] in FASTENERS for mark in sorted(graph) if mark not in placed}
+    # What only holds others together goes in last; all else is set at the first of its joints.
+    loose = {mark: is_fastener(graph.nodes[mark]["kind"]) for mark in sorted(graph) if mark not in placed}
     if strays := [mark for mark in loose if not graph.degree(mark)]:
         raise PlanError(
             f"{', '.join(strays[:5])}: {len(strays)} parts that no edge ties to another, so that nobody knows when to "

@@ -7,11 +7,13 @@ from difflib import get_close_matches
 import networkx as nx
 
 from aag_cad.language import Sentence, Text, has_words, text
-from aag_cad.parts.marks import joint_of
+from aag_cad.parts.kinds import is_fastener
+from assembly.base.any_graph import as_multigraph
 from assembly.base.errors import PlanError
 from assembly.base.locking_order import LockingOrder, frequency
-from assembly.base.mark_ranges import joined_ranges
+from assembly.base.mark_ranges import named_marks
 from assembly.base.steps import Plan, Step
+from assembly.graph.laying_units import joint_name
 from assembly.plan.schedule import Schedule
 
 _MOST_SHOWN = 8
@@ -72,10 +74,12 @@ def _fastened(
     graph: "nx.MultiGraph[str]", parts: Sequence[str], plan: Plan, step: Step
 ) -> dict[tuple[int, str], list[str]]:
     """Return the fasteners at the joints of some parts by the number of the step that puts them in, if another one."""
-    joints = {joint for part in parts for _, _, joint in graph.edges(part, keys=True)}
+    joints = {joint_name(*edge) for edge in graph.edges(parts, keys=True, data=True)}
+    fasteners = {mark for mark, node in graph.nodes(data=True) if is_fastener(node["kind"])} - set(parts)
+    at_joints = {edge[0] for edge in graph.edges(fasteners, keys=True, data=True) if joint_name(*edge) in joints}
     found: dict[tuple[int, str], list[str]] = defaultdict(list)
     for other in plan.steps:
-        marks = [mark for mark in other.marks if joint_of(mark) in joints and mark not in parts]
+        marks = [mark for mark in other.marks if mark in at_joints]
         if other is not step and marks:
             found[other.number, "fastened"] = marks
     return found
@@ -100,7 +104,7 @@ def _line(step: Step, around: Mapping[tuple[int, str], Sequence[str]], otherwise
         marks = around.get((step.number, relation), ())
         if marks:
             more = " …" if len(marks) > _MOST_SHOWN else ""
-            shown = f"{joined_ranges(marks[:_MOST_SHOWN])}{more}"
+            shown = f"{named_marks(marks[:_MOST_SHOWN])}{more}"
             return text(f"explain.{relation}", number=step.number, title=step.title, marks=shown)
     return text(f"explain.{otherwise}", number=step.number, title=step.title)
 
@@ -123,7 +127,7 @@ def _kind(kind: str) -> Sentence:
 
 
 def explanation(
-    graph: "nx.MultiGraph[str]",
+    any_graph: "nx.Graph[str]",
     plan: Plan,
     mark: str,
     schedule: Schedule | None = None,
@@ -131,8 +135,10 @@ def explanation(
 ) -> list[Text]:
     """Return why a part or beam comes when it does, one line each.
 
-    ``graph`` is that of ``assembly.graph.gridshell_graph``. PlanError if no part has the mark, or no step handles it.
+    ``any_graph`` is that of a gridshell, or any other that a plan was made of. PlanError if no part has the mark, or no
+    step handles it.
     """
+    graph = as_multigraph(any_graph)
     parts = _piece(graph, mark)
     at, node = step_of_parts(plan, graph), graph.nodes[parts[0]]
     made = next((step for step in plan.steps if parts[0] in step.marks), None)

@@ -13,11 +13,14 @@ from aag_cad.findings import Finding
 from aag_cad.language import Figure, Text, text
 from aag_cad.parts.marks import short_mark
 from aag_cad.units import MM_PER_M
-from assembly.base.lifters import lifters_of, lifting_findings, named_marks
+from assembly.base.errors import PlanError
+from assembly.base.lifters import lifters_of, lifting_findings
+from assembly.base.mark_ranges import named_marks
 from assembly.base.phases import Phase
 from assembly.base.steps import Plan
 from assembly.graph.interlacing import Interlacing, Slide, interlacing
 from assembly.graph.laying_units import Overlap, Unit, units_of
+from assembly.graph.whole import whole_graph
 from assembly.laying.joining import Joining, joinings
 from assembly.laying.order import FlatOrder, flat_order_of, groups_of
 from assembly.plan.work import PAIR, Work, steps_from
@@ -67,11 +70,10 @@ def _kits(graph: "nx.MultiGraph[str]", units: Mapping[str, Unit]) -> dict[str, t
 def _weights(
     graph: "nx.MultiGraph[str]", kits: Mapping[str, tuple[str, ...]], units: Mapping[str, Unit]
 ) -> dict[str, tuple[float, float]]:
-    """Return (kg, mm) of every unit with its kit, and of every part that is not in one."""
-    masses = {mark: float(graph.nodes[mark]["mass_kg"]) for mark in graph}
-    single = sorted(set(graph) - {mark for kit in kits.values() for mark in kit})
-    found = {mark: (sum(masses[part] for part in kit), units[mark].length) for mark, kit in kits.items()}
-    return found | {mark: (masses[mark], float(graph.nodes[mark]["length_mm"])) for mark in single}
+    """Return (kg, mm) of every part, and of every unit with its kit."""
+    parts = {mark: (float(node["mass_kg"]), float(node["length_mm"])) for mark, node in graph.nodes(data=True)}
+    made = {mark: (sum(parts[part][0] for part in kit), units[mark].length) for mark, kit in kits.items()}
+    return parts | made
 
 
 def _laying(basis: _Basis, steps: dict[str, str]) -> Iterator[Work]:
@@ -184,26 +186,28 @@ def _waiting(marks: Sequence[str]) -> tuple[Finding, ...]:
     return (Finding("AAG956", "error", ", ".join(marks), what, float(len(marks)), 0.0, "", remedy),)
 
 
-def graph_plan(graph: "nx.MultiGraph[str]", people: int, lift_limit: float) -> Plan:
-    """Return the plan of laying a graph on the floor, sliding in what is woven and joining it loosely.
+def graph_plan(graph: "nx.Graph[str]", people: int, lift_limit: float) -> Plan:
+    """Return the plan of laying any networkx graph on the floor, sliding in what is woven and joining it loosely.
 
     For a crew of ``people`` who lift at most ``lift_limit`` kg each. Runs are laid in groups of at most 7, each slide
     is a step of its own, and at most 24 joints are joined in a step. ``findings`` name what cannot be laid (AAG951) or
-    put in (AAG956), which is in no step, and what is heavy (AAG955). PlanError if the graph has faults, a part is tied
-    to nothing, or the crew is empty.
+    put in (AAG956), which is in no step, and what is heavy (AAG955). PlanError if the graph is empty or has faults, a
+    part is tied to nothing, or the crew is empty.
     """
-    lifters, woven, units = lifters_of(people, lift_limit), interlacing(graph, later=()), units_of(graph)
-    order, kits = flat_order_of(graph, woven, later=()), _kits(graph, units)
-    basis, weights = _Basis(graph, units, kits, woven, order), _weights(graph, kits, units)
+    lifters, whole = lifters_of(people, lift_limit), whole_graph(graph)
+    if not whole:
+        raise PlanError("graph: no nodes, at least 1 needed: give it the parts that are to be put together")
+    woven, units = interlacing(whole, later=()), units_of(whole)
+    order, kits = flat_order_of(whole, woven, later=()), _kits(whole, units)
+    basis, weights = _Basis(whole, units, kits, woven, order), _weights(whole, kits, units)
     placed = {mark: unit for unit, kit in kits.items() for mark in kit}
-    found, waiting = joinings(graph, units, placed, woven.left_out, woven.overlaps)
+    found, waiting = joinings(whole, units, placed, woven.left_out, woven.overlaps)
     step_of: dict[str, str] = {}
     works = [*_laying(basis, step_of), *_sliding(basis, step_of), *_joining(basis, found, step_of)]
-    lifted = {mark: weight for mark, weight in weights.items() if mark not in woven.left_out}
+    alone = (mark for mark in weights if placed.get(mark, mark) == mark and mark not in woven.left_out)
+    lifted = {mark: weights[mark] for mark in alone}
     findings = (*woven.findings, *_waiting(waiting), *lifting_findings(lifted, lifters))
-    # A step names the parts of a beam too; none of them is heavier or longer than the beam.
-    single = {mark: (float(node["mass_kg"]), float(node["length_mm"])) for mark, node in graph.nodes(data=True)}
-    return Plan(str(graph.name), tuple(steps_from(works, single | weights, lifters)), findings)
+    return Plan(str(whole.name), tuple(steps_from(works, weights, lifters)), findings)
 
 
 # Keys of ``Minutes`` by the words for kinds; what the table does not know takes the time of a bolt.

@@ -7,6 +7,7 @@ import networkx as nx
 import numpy as np
 
 from aag_cad.units import Floats
+from assembly.base.any_graph import as_multigraph
 from assembly.base.errors import PlanError
 from assembly.base.segments import Limits
 from assembly.transport.loading import best_pose
@@ -17,7 +18,7 @@ _SEED = 0
 _ROUNDING = 1e-9
 
 
-def _simple(graph: "nx.Graph[str]") -> "nx.Graph[str]":
+def _simple(graph: "nx.MultiGraph[str]") -> "nx.Graph[str]":
     """Return the graph with one edge for each pair of parts; its weight is how many joints tie them."""
     simple: nx.Graph[str] = nx.Graph()
     simple.add_nodes_from(sorted(graph))
@@ -27,17 +28,17 @@ def _simple(graph: "nx.Graph[str]") -> "nx.Graph[str]":
     return simple
 
 
-def _fits(graph: "nx.Graph[str]", nodes: list[str], limits: Limits) -> bool:
+def _fits(graph: "nx.MultiGraph[str]", nodes: list[str], limits: Limits) -> bool:
     if sum(float(graph.nodes[node]["mass_kg"]) for node in nodes) > limits.load:
         return False
     return best_pose(_points(graph, nodes), limits.room, 1.0).filling <= 1.0 + _ROUNDING
 
 
-def _points(graph: "nx.Graph[str]", nodes: Sequence[str]) -> Floats:
+def _points(graph: "nx.MultiGraph[str]", nodes: Sequence[str]) -> Floats:
     return np.array([graph.nodes[node]["position"] for node in nodes], dtype=np.float64)
 
 
-def _slices(graph: "nx.Graph[str]", nodes: list[str]) -> Halves:
+def _slices(graph: "nx.MultiGraph[str]", nodes: list[str]) -> Halves:
     """Return two halves of equal mass along the longest extent of the positions."""
     points = _points(graph, nodes)
     centred = points - points.mean(axis=0)
@@ -49,7 +50,7 @@ def _slices(graph: "nx.Graph[str]", nodes: list[str]) -> Halves:
     return low, high
 
 
-def _halves(graph: "nx.Graph[str]", simple: "nx.Graph[str]", nodes: list[str], limits: Limits) -> Halves:
+def _halves(graph: "nx.MultiGraph[str]", simple: "nx.Graph[str]", nodes: list[str], limits: Limits) -> Halves:
     """Return two slices, bettered by Kernighan-Lin unless that makes a half larger than it may be."""
     sliced = _slices(graph, nodes)
     found = nx.algorithms.community.kernighan_lin_bisection(
@@ -64,7 +65,7 @@ def _halves(graph: "nx.Graph[str]", simple: "nx.Graph[str]", nodes: list[str], l
 
 
 def _divided(
-    graph: "nx.Graph[str]", simple: "nx.Graph[str]", nodes: list[str], limits: Limits
+    graph: "nx.MultiGraph[str]", simple: "nx.Graph[str]", nodes: list[str], limits: Limits
 ) -> Iterator[frozenset[str]]:
     if _fits(graph, nodes, limits):
         yield frozenset(nodes)
@@ -88,11 +89,12 @@ def partition_graph(graph: "nx.Graph[str]", limits: Limits) -> tuple[frozenset[s
     by it. Groups come in the order of their first marks. PlanError if a node lacks an attribute or is too heavy by
     itself.
     """
-    for node in sorted(graph):
-        missing = sorted({"mass_kg", "position"} - set(graph.nodes[node]))
+    several = as_multigraph(graph)
+    for node in sorted(several):
+        missing = sorted({"mass_kg", "position"} - set(several.nodes[node]))
         if missing:
             raise PlanError(f"{node}: no {' and no '.join(missing)}; give every node mass_kg (kg) and position (mm)")
-    if not graph:
+    if not several:
         return ()
-    groups = _divided(graph, _simple(graph), sorted(graph), limits)
+    groups = _divided(several, _simple(several), sorted(several), limits)
     return tuple(sorted(groups, key=min))
