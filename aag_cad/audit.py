@@ -56,12 +56,7 @@ def forming_findings(design: Design, gridshell: Gridshell) -> Iterator[Finding]:
 
 
 def hole_findings(_design: Design, gridshell: Gridshell) -> Iterator[Finding]:
-    """Yield AAG201 to AAG207: where holes, fasteners and washers miss EN 1995-1-1, tables 8.2 and 8.4, and 10.4.3.
-
-    AAG201 from the end, AAG202 from the edge, AAG203 from each other, AAG204 size of the hole, AAG205 in a coupling
-    block, AAG206 in a stud, AAG207 washers; planks alike are named once. See
-    ``aag_cad.mechanics.checks.fastener_spacing``.
-    """
+    """Yield AAG201 to AAG207 of ``aag_cad.mechanics.checks.fastener_spacing``."""
     yield from shortfalls(gridshell)
 
 
