@@ -1,25 +1,24 @@
 """Webs as Wavefront OBJ: a quad mesh out, and in again with rows and columns recovered from its topology.
 
 Convention: faces run counter-clockwise seen from outside. Rows and columns both rise from the first corner of the first
-face, which is what makes the recovered grid one and the same each time. A comment ``# geodesics: first edge`` (or
-``second edge``) says whether the G lines run along the edge from the first to the second corner of the first face, or
-along the next one.
+face, which is what makes the recovered grid one and the same each time. The G lines run along the edge from the first
+to the second corner of the first face, or along the next one if a comment ``# geodesics: second edge`` says so.
 """
 
 import math
 import re
-from collections import Counter, deque
+from collections import Counter
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
+import networkx as nx
 import numpy as np
 
 from aag_cad.errors import FileError
 from aag_cad.units import Floats
 from aag_cad.web.web import Web
 
-GeodesicDirection: TypeAlias = Literal["first edge", "second edge"]
 Face: TypeAlias = tuple[int, int, int, int]
 DirectedEdges: TypeAlias = dict[tuple[int, int], int]
 
@@ -41,7 +40,7 @@ class _Mesh:
     vertex_lines: list[int]
     faces: list[Face]
     face_lines: list[int]
-    stated: GeodesicDirection | None
+    along_second: bool
 
 
 def web_obj(web: Web) -> str:
@@ -60,17 +59,18 @@ def web_obj(web: Web) -> str:
     return "\n".join(lines) + "\n"
 
 
-def read_web_obj(text: str, source: str, geodesic_direction: GeodesicDirection = "first edge") -> Web:
+def read_web_obj(text: str, source: str) -> Web:
     """Return the web of an OBJ text; ``source`` names the file in errors.
 
-    ``geodesic_direction`` says where the G lines run if no comment of the file says so. FileError with the line and the
-    reason for what is not one rectangular grid of quads in mm.
+    FileError with the line and the reason for what is not one rectangular grid of quads in mm.
     """
     mesh = _parsed(text, source)
     _check_vertices(mesh)
     edges = _directed_edges(mesh)
-    _check_topology(mesh, edges)
-    places = _grid_places(mesh, edges, mesh.stated or geodesic_direction)
+    neighbours = nx.Graph((face, edges[b, a]) for (a, b), face in edges.items() if (b, a) in edges)
+    neighbours.add_nodes_from(range(len(mesh.faces)))
+    _check_topology(mesh, edges, neighbours)
+    places = _grid_places(mesh, edges, neighbours)
     index = np.array([places[k] for k in range(len(places))])
     index -= index.min(axis=0)
     rows, columns = (int(k) + 1 for k in index.max(axis=0))
@@ -102,11 +102,11 @@ def _parsed(text: str, source: str) -> _Mesh:
     vertices: list[list[float]] = []
     faces: list[Face] = []
     vertex_lines, face_lines = [], []
-    stated: GeodesicDirection | None = None
+    along_second = False
     for number, line in _logical_lines(text):
         where = f"{source}, line {number}"
         if found := _STATED.fullmatch(line):
-            stated = "first edge" if found[1] == "first edge" else "second edge"
+            along_second = found[1] == "second edge"
         word, *values = line.split("#", 1)[0].split() or [""]
         if word == "v":
             vertices.append(_vertex(values, where))
@@ -130,7 +130,7 @@ def _parsed(text: str, source: str) -> _Mesh:
                 f"{source}, line {number}: the face names vertex {max(corners) + 1}, the file has {len(vertices)}; "
                 "export the mesh again"
             )
-    return _Mesh(source, np.array(vertices), vertex_lines, faces, face_lines, stated)
+    return _Mesh(source, np.array(vertices), vertex_lines, faces, face_lines, along_second)
 
 
 def _vertex(values: list[str], where: str) -> list[float]:
@@ -190,8 +190,7 @@ def _check_vertices(mesh: _Mesh) -> None:
     loose = sorted(set(range(len(mesh.vertices))) - {corner for face in mesh.faces for corner in face})
     if loose:
         raise FileError(
-            f"{mesh.source}, line {mesh.vertex_lines[loose[0]]}: vertex {loose[0] + 1} belongs to no face, "
-            f"{len(loose)} such in all; delete loose vertices"
+            f"{_vertex_place(mesh, loose[0])} belongs to no face, {len(loose)} such in all; delete loose vertices"
         )
     corners = mesh.vertices[np.array(mesh.faces)]
     edge = float(np.median(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)))
@@ -227,90 +226,60 @@ def _directed_edges(mesh: _Mesh) -> DirectedEdges:
     return edges
 
 
-def _check_topology(mesh: _Mesh, edges: DirectedEdges) -> None:
+def _check_topology(mesh: _Mesh, edges: DirectedEdges, neighbours: "nx.Graph[int]") -> None:
     """Refuse what is not one rectangle: sheets, parts, holes, tubes, irregular vertices, re-entrant corners."""
-    border = {a: b for a, b in edges if (b, a) not in edges}
-    touching = Counter(a for a, b in edges if (b, a) not in edges)
+    border = [(a, b) for a, b in edges if (b, a) not in edges]
+    touching = Counter(a for a, _ in border)
     for vertex in sorted(touching):
         if touching[vertex] > 1:
             raise FileError(
                 f"{_vertex_place(mesh, vertex)} joins faces that share no edge; the mesh is not a manifold: separate "
                 "them there"
             )
-    _check_parts(mesh, edges)
-    _check_border(mesh, border)
-    _check_valences(mesh, edges, border)
-
-
-def _vertex_place(mesh: _Mesh, vertex: int) -> str:
-    return f"{mesh.source}, line {mesh.vertex_lines[vertex]}: vertex {vertex + 1}"
-
-
-def _check_parts(mesh: _Mesh, edges: DirectedEdges) -> None:
-    reached, queue = {0}, deque([0])
-    while queue:
-        for a, b in _around(mesh.faces[queue.popleft()]):
-            neighbour = edges.get((b, a))
-            if neighbour is not None and neighbour not in reached:
-                reached.add(neighbour)
-                queue.append(neighbour)
+    reached = nx.node_connected_component(neighbours, 0)
     if len(reached) < len(mesh.faces):
         apart = next(line for number, line in enumerate(mesh.face_lines) if number not in reached)
         raise FileError(
             f"{mesh.source}, line {apart}: the face is cut off from the first; {len(reached)} of {len(mesh.faces)} "
             "faces hang together: keep one part, or weld its seam"
         )
-
-
-def _check_border(mesh: _Mesh, border: dict[int, int]) -> None:
-    loops: list[list[int]] = []
-    left = dict(border)
-    while left:
-        loops.append([min(left)])
-        while (following := left.pop(loops[-1][-1])) in left:
-            loops[-1].append(following)
+    loops = list(nx.connected_components(nx.Graph(border)))
     if not loops:
         raise FileError(f"{mesh.source}: the mesh is closed, a web has one border; cut it open")
     if len(loops) > 1:
-        shortest = min(loops, key=len)
+        count, first = min((len(loop), min(loop)) for loop in loops)
         raise FileError(
             f"{mesh.source}: the mesh has {len(loops)} borders, a web has one; it has a hole, or is a tube, at vertex "
-            f"{shortest[0] + 1} ({len(shortest)} edges around): fill the hole or cut the tube open"
+            f"{first + 1} ({count} edges around): fill the hole or cut the tube open"
         )
-
-
-def _check_valences(mesh: _Mesh, edges: DirectedEdges, border: dict[int, int]) -> None:
     valence = Counter(vertex for edge in {frozenset(edge) for edge in edges} for vertex in edge)
     for vertex in sorted(valence):
-        if vertex in border and valence[vertex] > 3:
+        if vertex in touching and valence[vertex] > 3:
             raise FileError(
                 f"{_vertex_place(mesh, vertex)} on the border has {valence[vertex]} edges, a re-entrant corner; a web "
                 "is a full rectangle of rows and columns with 2 or 3: fill up or crop the mesh"
             )
-        if vertex not in border and valence[vertex] != 4:
+        if vertex not in touching and valence[vertex] != 4:
             raise FileError(
                 f"{_vertex_place(mesh, vertex)} has {valence[vertex]} edges; inner vertices of a web have 4: remesh "
                 "without singular vertices"
             )
 
 
-def _grid_places(mesh: _Mesh, edges: DirectedEdges, direction: GeodesicDirection) -> dict[int, tuple[int, int]]:
+def _vertex_place(mesh: _Mesh, vertex: int) -> str:
+    return f"{mesh.source}, line {mesh.vertex_lines[vertex]}: vertex {vertex + 1}"
+
+
+def _grid_places(mesh: _Mesh, edges: DirectedEdges, neighbours: "nx.Graph[int]") -> dict[int, tuple[int, int]]:
     """Return (row, column) of each vertex, walking from face to face; turning left turns +row into +column."""
     a, b, c, d = mesh.faces[0]
-    along = [(a, b, c, d)] if direction == "first edge" else [(b, c, d, a)]
-    places = dict(zip(along[0], ((0, 0), (1, 0), (1, 1), (0, 1)), strict=True))
-    reached, queue = {0}, deque([0])
-    while queue:
-        for p, q in _around(mesh.faces[queue.popleft()]):
-            neighbour = edges.get((q, p))
-            if neighbour is None or neighbour in reached:
-                continue
-            face = mesh.faces[neighbour]
-            start = face.index(p)
-            ahead, beside = face[(start + 1) % 4], face[(start + 2) % 4]
-            row, column = places[p][0] - places[q][0], places[p][1] - places[q][1]
-            places[ahead] = places[p][0] - column, places[p][1] + row
-            places[beside] = places[q][0] - column, places[q][1] + row
-            reached.add(neighbour)
-            queue.append(neighbour)
+    along = (b, c, d, a) if mesh.along_second else (a, b, c, d)
+    places = dict(zip(along, ((0, 0), (1, 0), (1, 1), (0, 1)), strict=True))
+    for known, number in nx.bfs_edges(neighbours, 0):
+        p, q = next((p, q) for p, q in _around(mesh.faces[known]) if edges.get((q, p)) == number)
+        face = mesh.faces[number]
+        start = face.index(p)
+        row, column = places[p][0] - places[q][0], places[p][1] - places[q][1]
+        places[face[(start + 1) % 4]] = places[p][0] - column, places[p][1] + row
+        places[face[(start + 2) % 4]] = places[q][0] - column, places[q][1] + row
     return places

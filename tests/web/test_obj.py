@@ -79,16 +79,16 @@ def test_the_first_corner_of_the_first_face_is_where_rows_and_columns_begin_to_r
     assert np.array_equal(right, np.subtract(vertices[c - 1], vertices[b - 1]))
 
 
-def test_the_geodesics_run_as_the_file_says_else_as_the_caller_says() -> None:
+def test_the_geodesics_run_along_the_first_edge_unless_the_file_says_otherwise() -> None:
     """Both answers keep the outside outside: rows x columns is the normal of the faces."""
     plain = obj(*grid())
-    first, second = (read_web_obj(plain, "grid.obj", way).vertices for way in ("first edge", "second edge"))
+    stated = "# geodesics: second edge\n" + plain
+    first, second = (read_web_obj(text, "grid.obj").vertices for text in (plain, stated))
     assert first.shape == (ROWS, COLUMNS, 3)
     assert second.shape == (COLUMNS, ROWS, 3)
     for found in (first, second):
         assert np.cross(found[1, 0] - found[0, 0], found[0, 1] - found[0, 0])[2] > 0.0
-    stated = "# geodesics: second edge\n" + plain
-    assert np.array_equal(read_web_obj(stated, "grid.obj", "first edge").vertices, second)
+    assert np.array_equal(read_web_obj("# geodesics: first edge\n" + plain, "grid.obj").vertices, first)
 
 
 def test_what_is_geodesic_in_the_web_is_geodesic_when_it_is_read() -> None:
