@@ -18,12 +18,8 @@ _GAUSS = np.polynomial.legendre.leggauss(60)
 class Profile(Protocol):
     """A meridian (r(u), z(u)) that rises with u; u = 0 is the ground line (z = 0)."""
 
-    def radius(self, u: Floats) -> Floats:
-        """Return r and its first three derivatives by u as (4, n), mm."""
-        ...
-
-    def height(self, u: Floats) -> Floats:
-        """Return z and its first three derivatives by u as (4, n), mm."""
+    def meridian(self, u: Floats) -> tuple[Floats, Floats]:
+        """Return r and z, each with its first three derivatives by u as (4, n), mm."""
         ...
 
     @property
@@ -43,24 +39,20 @@ class CrpcProfile:
     ratio: float
     domain: tuple[float, float] = (-8.0, 8.0)
 
-    def radius(self, u: Floats) -> Floats:
-        """Return r and its first three derivatives by u as (4, n), mm."""
+    def meridian(self, u: Floats) -> tuple[Floats, Floats]:
+        """Return r and z, each with its first three derivatives by u as (4, n), mm; z by Gauss-Legendre quadrature."""
         a = 1.0 / self.ratio
         tanh, sech2 = np.tanh(u), 1.0 / np.cosh(u) ** 2
         r = self.neck_radius * np.cosh(u) ** a
         bend = a * tanh**2 + sech2
-        return np.array([r, a * r * tanh, a * r * bend, a * r * (a * tanh * bend + 2.0 * (a - 1.0) * sech2 * tanh)])
-
-    def height(self, u: Floats) -> Floats:
-        """Return z and its first three derivatives by u as (4, n), mm; z by Gauss-Legendre quadrature."""
-        a = 1.0 / self.ratio
+        dddr = a * r * (a * tanh * bend + 2.0 * (a - 1.0) * sech2 * tanh)
         nodes, weights = _GAUSS
         half = np.multiply.outer(u / 2.0, nodes + 1.0)
         z = a * self.neck_radius * (u / 2.0) * (np.cosh(half) ** (a - 1.0) @ weights)
-        tanh, sech2 = np.tanh(u), 1.0 / np.cosh(u) ** 2
         dz = a * self.neck_radius * np.cosh(u) ** (a - 1.0)
         ddz = (a - 1.0) * tanh * dz
-        return np.array([z, dz, ddz, (a - 1.0) * (sech2 * dz + tanh * ddz)])
+        dddz = (a - 1.0) * (sech2 * dz + tanh * ddz)
+        return np.array([r, a * r * tanh, a * r * bend, dddr]), np.array([z, dz, ddz, dddz])
 
     def asymptotic(self, u: Floats) -> Floats:
         """Return the asymptotic coordinate s = u / sqrt(n)."""
@@ -79,15 +71,10 @@ class HyperboloidProfile:
     semi_axis: float
     domain: tuple[float, float] = (-3.0, 3.0)
 
-    def radius(self, u: Floats) -> Floats:
-        """Return r and its first three derivatives by u as (4, n), mm."""
-        even, odd = self.neck_radius * np.cosh(u), self.neck_radius * np.sinh(u)
-        return np.array([even, odd, even, odd])
-
-    def height(self, u: Floats) -> Floats:
-        """Return z and its first three derivatives by u as (4, n), mm."""
-        odd, even = self.semi_axis * np.sinh(u), self.semi_axis * np.cosh(u)
-        return np.array([odd, even, odd, even])
+    def meridian(self, u: Floats) -> tuple[Floats, Floats]:
+        """Return r and z, each with its first three derivatives by u as (4, n), mm."""
+        cosh, sinh = np.cosh(u), np.sinh(u)
+        return self.neck_radius * np.array([cosh, sinh] * 2), self.semi_axis * np.array([sinh, cosh] * 2)
 
     def asymptotic(self, u: Floats) -> Floats:
         """Return the asymptotic coordinate, the Gudermannian s = 2 arctan tanh(u/2)."""
@@ -106,15 +93,11 @@ class ArcProfile:
     meridian_radius: float
     domain: tuple[float, float] = (-1.5, 1.5)
 
-    def radius(self, u: Floats) -> Floats:
-        """Return r and its first three derivatives by u as (4, n), mm."""
+    def meridian(self, u: Floats) -> tuple[Floats, Floats]:
+        """Return r and z, each with its first three derivatives by u as (4, n), mm."""
         cos, sin = self.meridian_radius * np.cos(u), self.meridian_radius * np.sin(u)
-        return np.array([self.neck_radius + self.meridian_radius - cos, sin, cos, -sin])
-
-    def height(self, u: Floats) -> Floats:
-        """Return z and its first three derivatives by u as (4, n), mm."""
-        cos, sin = self.meridian_radius * np.cos(u), self.meridian_radius * np.sin(u)
-        return np.array([sin, cos, -sin, -cos])
+        radius = self.neck_radius + self.meridian_radius - cos
+        return np.array([radius, sin, cos, -sin]), np.array([sin, cos, -sin, -cos])
 
 
 @dataclass(frozen=True)
@@ -149,14 +132,8 @@ class SplineProfile:
         spline, ground = self._spline
         return float(spline.t[0]) - ground, float(spline.t[-1]) - ground
 
-    def _derivatives(self, u: Floats, axis: int) -> Floats:
+    def meridian(self, u: Floats) -> tuple[Floats, Floats]:
+        """Return r and z, each with its first three derivatives by u as (4, n), mm."""
         spline, ground = self._spline
-        return np.array([spline(u + ground, nu=order)[..., axis] for order in range(4)])
-
-    def radius(self, u: Floats) -> Floats:
-        """Return r and its first three derivatives by u as (4, n), mm."""
-        return self._derivatives(u, 0)
-
-    def height(self, u: Floats) -> Floats:
-        """Return z and its first three derivatives by u as (4, n), mm."""
-        return self._derivatives(u, 1)
+        both = np.array([spline(u + ground, nu=order) for order in range(4)])
+        return both[..., 0], both[..., 1]

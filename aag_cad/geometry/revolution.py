@@ -1,7 +1,8 @@
 """Surfaces of revolution in the chart (s, theta) whose diagonals are the asymptotic curves."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -41,7 +42,7 @@ class RevolutionSurface:
 
     def jet(self, u: Floats, v: Floats) -> Jet:
         """Return the 2-jet at meridian parameter u and angle v = theta, each (n,) float."""
-        r, z = self.profile.radius(u), self.profile.height(u)
+        r, z = self.profile.meridian(u)
         cos, sin, zero = np.cos(v), np.sin(v), np.zeros_like(u)
         return Jet(
             point=np.column_stack([self.axis_x + r[0] * cos, r[0] * sin, z[0]]),
@@ -58,7 +59,7 @@ def asymptotic_rate(profile: Profile, u: Floats) -> tuple[Floats, Floats]:
 
     SurfaceError with the height where the Gaussian curvature is not negative: no asymptotic curve passes there.
     """
-    r, z = profile.radius(u), profile.height(u)
+    r, z = profile.meridian(u)
     top, bottom = r[0] * z[1], r[2] * z[1] - z[2] * r[1]
     wrong = (top <= 0) | (bottom <= 0)
     if np.any(wrong):
@@ -80,14 +81,11 @@ class AsymptoticChart:
     """
 
     surface: RevolutionSurface
-    _splines: tuple[BSpline, BSpline] | None = field(init=False)
 
-    def __post_init__(self) -> None:
-        """Tabulate s(u) by quadrature where the profile has no closed form."""
+    @cached_property
+    def _splines(self) -> tuple[BSpline, BSpline]:
+        """The splines s(u) and u(s) by quadrature, where the profile has no closed form."""
         profile = self.surface.profile
-        if isinstance(profile, ClosedFormAsymptotic):
-            object.__setattr__(self, "_splines", None)
-            return
         low, high = profile.domain
         edges = np.linspace(low, high, _PANELS + 1)
         nodes, weights = _GAUSS
@@ -98,8 +96,7 @@ class AsymptoticChart:
         s = np.concatenate([[0.0], np.cumsum(pieces)])
         forward = make_interp_spline(edges, s, k=5)
         s = s - float(forward(0.0))
-        splines = make_interp_spline(edges, s, k=5), make_interp_spline(s, edges, k=5)
-        object.__setattr__(self, "_splines", splines)
+        return make_interp_spline(edges, s, k=5), make_interp_spline(s, edges, k=5)
 
     def meridian_parameter(self, s: Floats) -> Floats:
         """Return the meridian parameter u at the asymptotic coordinate s, (n,); SurfaceError outside the meridian."""
@@ -112,7 +109,6 @@ class AsymptoticChart:
             )
         if isinstance(profile, ClosedFormAsymptotic):
             return profile.from_asymptotic(s)
-        assert self._splines is not None
         forward, inverse = self._splines
         u = np.asarray(inverse(s))
         for _ in range(3):
@@ -127,7 +123,6 @@ class AsymptoticChart:
         if isinstance(profile, ClosedFormAsymptotic):
             low, high = profile.asymptotic(np.array(profile.domain))
             return float(low), float(high)
-        assert self._splines is not None
         inverse = self._splines[1]
         return float(inverse.t[0]), float(inverse.t[-1])
 

@@ -68,7 +68,7 @@ def test_the_metric_is_that_of_the_reference(n: float) -> None:
 def test_the_slope_of_the_meridian_falls_with_the_power_n_of_the_radius(n: float) -> None:
     """Sin psi = dz/ds = (r0 / r)^n: vertical at the neck, ever flatter above it."""
     profile = CrpcProfile(R0, n)
-    dr, dz = profile.radius(HEIGHTS)[1], profile.height(HEIGHTS)[1]
+    dr, dz = (values[1] for values in profile.meridian(HEIGHTS))
     np.testing.assert_allclose(dz / np.hypot(dr, dz), (R0 / radius(n)) ** n, rtol=1e-12)
 
 
@@ -89,7 +89,7 @@ def test_gaussian_curvature_in_closed_form(n: float) -> None:
 def test_the_ratio_one_is_the_catenoid_a_minimal_surface() -> None:
     forms = fundamental_forms(surface(1.0).jet(HEIGHTS, 0.0 * HEIGHTS))
     np.testing.assert_allclose(mean_curvature(forms) * R0, 0.0, atol=1e-13)
-    np.testing.assert_allclose(CrpcProfile(R0, 1.0).height(HEIGHTS)[0], R0 * HEIGHTS, rtol=1e-12)
+    np.testing.assert_allclose(CrpcProfile(R0, 1.0).meridian(HEIGHTS)[1][0], R0 * HEIGHTS, rtol=1e-12)
 
 
 @given(n=st.floats(0.3, 6.0), y=st.floats(-3.0, 3.0))
@@ -98,7 +98,7 @@ def test_derivatives_of_the_meridian_agree_with_finite_differences(n: float, y: 
     profile, step = CrpcProfile(R0, n), 5e-3
     u: Floats = y + step * np.arange(-3.0, 4.0)
     weights = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / (60.0 * step)
-    for values in (profile.radius(u), profile.height(u)):
+    for values in profile.meridian(u):
         scale = float(np.abs(values[1:]).max())
         np.testing.assert_allclose(values[:3] @ weights, values[1:, 3], atol=1e-8 * scale)
 
@@ -107,7 +107,7 @@ def test_derivatives_of_the_meridian_agree_with_finite_differences(n: float, y: 
 def test_the_height_is_the_integral_of_its_slope(n: float, y: float) -> None:
     """Z(y) = (r0 / n) integral cosh^(1/n - 1), by adaptive quadrature instead of the profile's fixed one."""
     expected = R0 / n * quad(lambda t: math.cosh(t) ** (1.0 / n - 1.0), 0.0, y, epsabs=1e-12, epsrel=1e-12)[0]
-    assert CrpcProfile(R0, n).height(np.array([y]))[0, 0] == pytest.approx(expected, rel=1e-10, abs=1e-9)
+    assert CrpcProfile(R0, n).meridian(np.array([y]))[1][0, 0] == pytest.approx(expected, rel=1e-10, abs=1e-9)
 
 
 def test_the_height_of_the_sixty_degree_surface_is_bounded() -> None:
@@ -117,7 +117,7 @@ def test_the_height_of_the_sixty_degree_surface_is_bounded() -> None:
     """
     bound = math.sqrt(math.pi) / 6.0 * gamma(1.0 / 3.0) / gamma(5.0 / 6.0)
     assert bound == pytest.approx(0.701091, abs=5e-7)
-    top = float(CrpcProfile(R0, 3.0).height(np.array([8.0]))[0, 0]) / R0
+    top = float(CrpcProfile(R0, 3.0).meridian(np.array([8.0]))[1][0, 0]) / R0
     rest = 2.0 ** (2.0 / 3.0) / 2.0 * math.exp(-16.0 / 3.0)
     assert top < bound
     assert top + rest == pytest.approx(bound, abs=1e-8)

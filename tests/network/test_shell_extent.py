@@ -29,7 +29,7 @@ def ridge_radius(theta: float) -> float:
 def height_at(radius: float) -> float:
     """Return z of the vault's meridian at a radius."""
     y = math.acosh((radius / 5100.0) ** 3)
-    return float(CrpcProfile(5100.0, 3.0).height(np.array([y]))[0, 0])
+    return float(CrpcProfile(5100.0, 3.0).meridian(np.array([y]))[1][0, 0])
 
 
 def test_three_shells_cover_sixty_square_metres(design: Design, chart: AsymptoticChart) -> None:
