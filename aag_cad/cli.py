@@ -335,7 +335,7 @@ def new(
     """Write NAME.toml, a commented copy of a shipped design, to edit."""
     from aag_cad.design import design_text, parse_design
 
-    text, _ = design_text(template)
+    text = design_text(template)
     shipped = tomllib.loads(text)["project"]["name"]
     text = text.replace(f'name = "{shipped}"', f'name = "{name}"', 1)
     parse_design(text, f"aag new {name}")

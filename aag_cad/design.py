@@ -2,7 +2,8 @@
 
 import math
 import tomllib
-from typing import Any, TypeAlias
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from pydantic import ValidationError, model_validator
@@ -27,10 +28,6 @@ _LEAST_FLATS = math.cos(math.radians(30.0))
 _KINDS = {"surface": ("profile", "crpc, catenoid, hyperboloid, arc, spline"), "shells": ("top", "ridge, mirror, level")}
 
 
-# What must hold, and what to say where it does not.
-Rules: TypeAlias = tuple[tuple[bool, str], ...]
-
-
 class Design(DesignTable):
     """One design file."""
 
@@ -52,184 +49,155 @@ class Design(DesignTable):
 
     @model_validator(mode="after")
     def _fits_together(self) -> "Design":
-        rules = (
-            *self._level_rules(),
-            *self._shell_rules(),
-            *self._joint_rules(),
-            *self._boundary_rules(),
-            *self._facade_rules(),
-            *self._stock_rules(),
-        )
-        broken = [text for holds, text in rules if not holds]
+        broken = [
+            *self._level_faults(),
+            *self._shell_faults(),
+            *self._joint_faults(),
+            *self._boundary_faults(),
+            *self._facade_faults(),
+            *self._stock_faults(),
+        ]
         if broken:
             raise ValueError("\n".join(broken))
         return self
 
-    def _shell_rules(self) -> Rules:
-        limit = 180.0 - 360.0 / self.shells.count
-        return (
-            (
-                self.optimise is None or self.shells.top == "ridge",
-                f"optimise: only shells with shells.top = 'ridge' are optimised, not {self.shells.top!r}; leave the "
-                "table out",
-            ),
-            (
-                self.shells.top != "ridge" or self.shells.sector_deg <= limit,
-                f"shells.sector_deg: {self.shells.sector_deg:g} is too wide for {self.shells.count} shells; "
-                f"at most {limit:g}, or neighbouring shells rise again beyond the entry: narrow the sector",
-            ),
-            (
-                self.ground_spacing > self.timber.width,
+    def _shell_faults(self) -> Iterator[str]:
+        shells, limit = self.shells, 180.0 - 360.0 / self.shells.count
+        if self.optimise is not None and shells.top != "ridge":
+            what = f"only shells with shells.top = 'ridge' are optimised, not {shells.top!r}"
+            yield f"optimise: {what}; leave the table out"
+        if shells.top == "ridge" and shells.sector_deg > limit:
+            yield (
+                f"shells.sector_deg: {shells.sector_deg:g} is too wide for {shells.count} shells; "
+                f"at most {limit:g}, or neighbouring shells rise again beyond the entry: narrow the sector"
+            )
+        if self.ground_spacing <= self.timber.width:
+            yield (
                 f"pattern.geodesics: {self.pattern.geodesics} planks of {self.timber.width:g} mm stand "
                 f"{self.ground_spacing:.0f} mm apart on the ground line and overlap; use fewer geodesics or a wider "
-                "shells.sector_deg",
-            ),
-        )
+                "shells.sector_deg"
+            )
 
-    def _joint_rules(self) -> Rules:
-        return (
-            (
-                self.timber.thickness < self.joints.gap,
-                f"timber.thickness: {self.timber.thickness:g} mm is not thinner than joints.gap "
-                f"{self.joints.gap:g} mm; choose a thinner plank or a wider gap",
-            ),
-            (
-                self.timber.thickness < self.timber.width,
-                f"timber.thickness: {self.timber.thickness:g} mm is not less than timber.width "
-                f"{self.timber.width:g} mm; swap the two",
-            ),
-            (
-                _LEAST_FLATS * self.joints.gap <= self.joints.stud_across_flats <= self.joints.gap,
-                f"joints.stud_across_flats: {self.joints.stud_across_flats:g} mm does not fill joints.gap "
-                f"{self.joints.gap:g} mm; make them equal, or at least {_LEAST_FLATS * self.joints.gap:.1f} mm where "
-                "beams do not cross at 60 degrees",
-            ),
-            (
-                self.joints.bolt_diameter <= self.joints.bolt_hole <= self.joints.bolt_diameter + 1.0,
-                f"joints.bolt_hole: {self.joints.bolt_hole:g} mm for a bolt of {self.joints.bolt_diameter:g} mm; "
-                "EN 1995-1-1, 10.4.3 allows the diameter to the diameter + 1 mm",
-            ),
-            (
-                self.joints.screw_diameter <= self.joints.screw_hole,
-                f"joints.screw_hole: {self.joints.screw_hole:g} mm is narrower than joints.screw_diameter "
-                f"{self.joints.screw_diameter:g} mm",
-            ),
-            (
-                2 * self.joints.bolt_offset + self.joints.bolt_hole < self.timber.width,
-                f"joints.bolt_offset: {self.joints.bolt_offset:g} mm puts the holes outside the plank of "
-                f"{self.timber.width:g} mm width; at most {(self.timber.width - self.joints.bolt_hole) / 2:g}",
-            ),
-            (
-                self.joints.bolt_hole < 2 * self.joints.bolt_offset,
-                f"joints.bolt_offset: {self.joints.bolt_offset:g} mm lets two holes of {self.joints.bolt_hole:g} mm "
-                "run into each other; make it larger",
-            ),
-            (
-                self.joints.stud_hole == "round" or self.joints.slot_length > 0.0,
-                "joints.slot_length: 0 mm makes no slot; more than 0, or joints.stud_hole = 'round'",
-            ),
-            (
-                self.joints.bolt_hole + self.joints.stud_slot <= 3.0 * self.joints.bolt_diameter,
-                f"joints.slot_length: {self.joints.slot_length:g} mm makes a slot longer than its washer of 3 d "
-                f"(EN 1995-1-1, 10.4.3); at most {3.0 * self.joints.bolt_diameter - self.joints.bolt_hole:g}",
-            ),
-            (
-                self.timber.thickness < self.joints.screw_length < self.timber.thickness + self.timber.width,
-                f"joints.screw_length: {self.joints.screw_length:g} mm does not end inside the coupling block; "
-                f"allowed {self.timber.thickness:g} to {self.timber.thickness + self.timber.width:g}",
-            ),
-            (
-                self.joints.stud_length >= 2.0 * (self.layer_offset + self.joints.bolt_offset + self.joints.bolt_hole),
-                f"joints.stud_length: {self.joints.stud_length:g} mm does not hold the bolts of both layers; at least "
-                f"{2.0 * (self.layer_offset + self.joints.bolt_offset + self.joints.bolt_hole):g}",
-            ),
-            (
-                self.joints.block_length >= 8.0 * self.joints.bolt_diameter,
-                f"joints.block_length: {self.joints.block_length:g} mm leaves the bolt less than 4 d to the block's "
-                f"ends (EN 1995-1-1, table 8.4); at least {8.0 * self.joints.bolt_diameter:g}",
-            ),
-        )
+    def _joint_faults(self) -> Iterator[str]:
+        joints, width, thickness = self.joints, self.timber.width, self.timber.thickness
+        bolt, hole, offset = joints.bolt_diameter, joints.bolt_hole, joints.bolt_offset
+        if thickness >= joints.gap:
+            yield (
+                f"timber.thickness: {thickness:g} mm is not thinner than joints.gap {joints.gap:g} mm; choose a "
+                "thinner plank or a wider gap"
+            )
+        if thickness >= width:
+            yield f"timber.thickness: {thickness:g} mm is not less than timber.width {width:g} mm; swap the two"
+        if not _LEAST_FLATS * joints.gap <= joints.stud_across_flats <= joints.gap:
+            yield (
+                f"joints.stud_across_flats: {joints.stud_across_flats:g} mm does not fill joints.gap {joints.gap:g} "
+                f"mm; make them equal, or at least {_LEAST_FLATS * joints.gap:.1f} mm where beams do not cross at 60 "
+                "degrees"
+            )
+        if not bolt <= hole <= bolt + 1.0:
+            yield (
+                f"joints.bolt_hole: {hole:g} mm for a bolt of {bolt:g} mm; EN 1995-1-1, 10.4.3 allows the diameter to "
+                "the diameter + 1 mm"
+            )
+        if joints.screw_diameter > joints.screw_hole:
+            yield _narrow_hole("joints", joints.screw_hole, joints.screw_diameter)
+        if 2 * offset + hole >= width:
+            yield (
+                f"joints.bolt_offset: {offset:g} mm puts the holes outside the plank of {width:g} mm width; "
+                f"at most {(width - hole) / 2:g}"
+            )
+        if hole >= 2 * offset:
+            yield f"joints.bolt_offset: {offset:g} mm lets two holes of {hole:g} mm run into each other; make it larger"
+        if joints.stud_hole != "round" and joints.slot_length <= 0.0:
+            yield "joints.slot_length: 0 mm makes no slot; more than 0, or joints.stud_hole = 'round'"
+        if hole + joints.stud_slot > 3.0 * bolt:
+            yield (
+                f"joints.slot_length: {joints.slot_length:g} mm makes a slot longer than its washer of 3 d "
+                f"(EN 1995-1-1, 10.4.3); at most {3.0 * bolt - hole:g}"
+            )
+        if not thickness < joints.screw_length < thickness + width:
+            yield (
+                f"joints.screw_length: {joints.screw_length:g} mm does not end inside the coupling block; "
+                f"allowed {thickness:g} to {thickness + width:g}"
+            )
+        if joints.stud_length < (least := 2.0 * (self.layer_offset + offset + hole)):
+            yield (
+                f"joints.stud_length: {joints.stud_length:g} mm does not hold the bolts of both layers; "
+                f"at least {least:g}"
+            )
+        if joints.block_length < 8.0 * bolt:
+            yield (
+                f"joints.block_length: {joints.block_length:g} mm leaves the bolt less than 4 d to the block's "
+                f"ends (EN 1995-1-1, table 8.4); at least {8.0 * bolt:g}"
+            )
 
-    def _boundary_rules(self) -> Rules:
-        return (
-            (
-                self.boundary.end_overhang <= self.boundary.max_overhang,
-                f"boundary.end_overhang: {self.boundary.end_overhang:g} mm is more than boundary.max_overhang "
-                f"{self.boundary.max_overhang:g} mm",
-            ),
-            (
-                self.boundary.ridge_setback >= self.timber.width / 2 + self.boundary.ridge_gap,
-                f"boundary.ridge_setback: {self.boundary.ridge_setback:g} mm leaves no room for half a plank "
-                f"and boundary.ridge_gap; at least {self.timber.width / 2 + self.boundary.ridge_gap:g}",
-            ),
-        )
+    def _boundary_faults(self) -> Iterator[str]:
+        boundary, least = self.boundary, self.timber.width / 2 + self.boundary.ridge_gap
+        if boundary.end_overhang > boundary.max_overhang:
+            yield (
+                f"boundary.end_overhang: {boundary.end_overhang:g} mm is more than boundary.max_overhang "
+                f"{boundary.max_overhang:g} mm"
+            )
+        if boundary.ridge_setback < least:
+            yield (
+                f"boundary.ridge_setback: {boundary.ridge_setback:g} mm leaves no room for half a plank and "
+                f"boundary.ridge_gap; at least {least:g}"
+            )
 
-    def _stock_rules(self) -> Rules:
+    def _stock_faults(self) -> Iterator[str]:
         stock, thickness = self.stock, self.timber.thickness
         needed = stock.planks_per_board * thickness + (stock.planks_per_board - 1) * stock.split_kerf
-        listed = {"lengths": stock.lengths, "bar_lengths": stock.bar_lengths, "metal_lengths": stock.metal_lengths}
-        return (
-            (
-                stock.board_thickness is None or stock.board_thickness >= needed,
-                f"stock.board_thickness: {stock.board_thickness or needed:g} mm does not give "
-                f"{stock.planks_per_board} planks of timber.thickness {thickness:g} mm; at least {needed:g}",
-            ),
-            *(
-                (
-                    min(lengths) > 2.0 * stock.trim,
-                    f"stock.{key}: nothing is left of {min(lengths):g} mm after stock.trim {stock.trim:g} mm at each "
-                    f"end; more than {2.0 * stock.trim:g}",
+        if stock.board_thickness is not None and stock.board_thickness < needed:
+            yield (
+                f"stock.board_thickness: {stock.board_thickness:g} mm does not give {stock.planks_per_board} planks of "
+                f"timber.thickness {thickness:g} mm; at least {needed:g}"
+            )
+        for key in ("lengths", "bar_lengths", "metal_lengths"):
+            shortest = min(getattr(stock, key))
+            if shortest <= 2.0 * stock.trim:
+                yield (
+                    f"stock.{key}: nothing is left of {shortest:g} mm after stock.trim {stock.trim:g} mm at each end; "
+                    f"more than {2.0 * stock.trim:g}"
                 )
-                for key, lengths in listed.items()
-            ),
-        )
 
-    def _facade_rules(self) -> Rules:
+    def _facade_faults(self) -> Iterator[str]:
         facade = self.facade
         if not facade.cover:
-            return ()
-        return (
-            (
-                facade.build_up < facade.screw_length,
+            return
+        if facade.build_up >= facade.screw_length:
+            yield (
                 f"facade.screw_length: {facade.screw_length:g} mm does not reach the coupling block under mullion, "
-                f"tapes, sheet and clamp; more than {facade.build_up:g}",
-            ),
-            *(
-                (
-                    thickness < width,
-                    f"facade.{name}: {thickness:g} mm is not less than the width {width:g} mm; give [width, thickness]",
+                f"tapes, sheet and clamp; more than {facade.build_up:g}"
+            )
+        for name, (width, thickness) in (("mullion", facade.mullion), ("clamp", facade.clamp)):
+            if thickness >= width:
+                yield (
+                    f"facade.{name}: {thickness:g} mm is not less than the width {width:g} mm; give [width, thickness]"
                 )
-                for name, (width, thickness) in (("mullion", facade.mullion), ("clamp", facade.clamp))
-            ),
-            (
-                facade.screw_hole / 2 <= facade.edge_gap < min(facade.mullion[0], facade.clamp[0]) / 2,
+        half = min(facade.mullion[0], facade.clamp[0]) / 2
+        if not facade.screw_hole / 2 <= facade.edge_gap < half:
+            yield (
                 f"facade.edge_gap: {facade.edge_gap:g} mm; more than half of facade.screw_hole "
                 f"({facade.screw_hole / 2:g}), or the screws hit the sheets, and less than half the width of mullion "
-                f"and clamp ({min(facade.mullion[0], facade.clamp[0]) / 2:g}), or these do not hold them",
-            ),
-            (
-                facade.screw_diameter <= facade.screw_hole,
-                f"facade.screw_hole: {facade.screw_hole:g} mm is narrower than facade.screw_diameter "
-                f"{facade.screw_diameter:g} mm",
-            ),
-        )
+                f"and clamp ({half:g}), or these do not hold them"
+            )
+        if facade.screw_diameter > facade.screw_hole:
+            yield _narrow_hole("facade", facade.screw_hole, facade.screw_diameter)
 
-    def _level_rules(self) -> Rules:
+    def _level_faults(self) -> Iterator[str]:
         shells = self.shells
-        if not isinstance(shells, LevelShells):
-            return ()
-        return (
-            (
-                shells.count == 1 or shells.sector_deg <= 180.0,
+        if not isinstance(shells, LevelShells) or shells.count == 1:
+            return
+        if shells.sector_deg > 180.0:
+            yield (
                 f"shells.sector_deg: {shells.sector_deg:g} for {shells.count} shells that stand apart; at most 180, "
-                "or shells.count = 1",
-            ),
-            (
-                shells.count == 1 or shells.axis_distance > 0.0,
+                "or shells.count = 1"
+            )
+        if shells.axis_distance <= 0.0:
+            yield (
                 f"shells.axis_distance: 0 puts all {shells.count} shells in one place; enlarge it or take "
-                "shells.count = 1",
-            ),
-        )
+                "shells.count = 1"
+            )
 
     @property
     def closed(self) -> bool:
@@ -270,6 +238,10 @@ class Design(DesignTable):
         return (self.joints.gap + self.timber.thickness) / 2.0
 
 
+def _narrow_hole(table: str, hole: float, screw: float) -> str:
+    return f"{table}.screw_hole: {hole:g} mm is narrower than {table}.screw_diameter {screw:g} mm"
+
+
 def _explain(error: ValidationError) -> str:
     """Return one line per fault: the key's path, what was found, what is allowed."""
     lines = []
@@ -308,11 +280,11 @@ def parse_design(text: str, source: str = "design") -> Design:
         raise DesignError(f"{source}:\n{_explain(error)}") from error
 
 
-def design_text(name_or_path: str) -> tuple[str, str]:
-    """Return (text, source) of a shipped design or of a file; FileError if neither can be read."""
-    return shipped_text("designs", ".toml", name_or_path, "design"), name_or_path
+def design_text(name_or_path: str) -> str:
+    """Return the text of a shipped design or of a file; FileError if neither can be read."""
+    return shipped_text("designs", ".toml", name_or_path, "design")
 
 
 def load_design(name_or_path: str) -> Design:
     """Return the design of a shipped name or of a TOML file; FileError or DesignError if it cannot be had."""
-    return parse_design(*design_text(name_or_path))
+    return parse_design(design_text(name_or_path), name_or_path)

@@ -18,7 +18,7 @@ def _aag(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProces
 
 
 def _changed(tmp_path: Path, old: str, new: str) -> str:
-    text, _ = design_text("vault")
+    text = design_text("vault")
     assert old in text
     path = tmp_path / "changed.toml"
     path.write_text(text.replace(old, new, 1), encoding="utf-8")

@@ -15,7 +15,7 @@ from aag_cad.design import Design, design_text, load_design, parse_design
 from aag_cad.errors import AagError, DesignError, FileError
 from aag_cad.resources import shipped_names
 
-VAULT = design_text("vault")[0]
+VAULT = design_text("vault")
 FREE_KEYS = (
     "timber.density", "timber.min_bending_radius", "timber.max_twist_deg_per_m", "supports.foot_height",
     "facade.sheet_width", "transport.length", "transport.width", "transport.height", "transport.mass",

@@ -53,7 +53,7 @@ def test_the_optimised_vault_has_60_degree_nodes_its_height_and_buildable_parts(
 
 
 def test_goals_out_of_reach_are_refused_with_the_reason() -> None:
-    text, source = design_text("vault-optimised")
+    text, source = design_text("vault-optimised"), "vault-optimised"
     stiff = parse_design(text.replace("cells = 2 ", "closeness = 1.0\ncells = 2 "), source)
     with pytest.raises(DesignError, match=r"optimise: (stalled|left the design's range): "):
         worked_surface(stiff)
@@ -62,7 +62,7 @@ def test_goals_out_of_reach_are_refused_with_the_reason() -> None:
 def test_a_design_without_the_table_and_one_that_cannot_be_optimised_are_said_so() -> None:
     with pytest.raises(DesignError, match=r"no table \[optimise\]"):
         optimised_design(load_design("vault"))
-    text, source = design_text("column")
+    text, source = design_text("column"), "column"
     with pytest.raises(DesignError, match=r"optimise: only shells with shells\.top"):
         parse_design(text + "\n[optimise]\ncells = 2\n", source)
 

@@ -29,7 +29,7 @@ def _aag(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the design of a small vault and its gridshell.json."""
-    text, _ = design_text("vault")
+    text = design_text("vault")
     for old, new in SMALL:
         assert old in text
         text = text.replace(old, new)

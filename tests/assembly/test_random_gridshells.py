@@ -15,7 +15,7 @@ from assembly.plan.assembly_plan import plan_of
 from assembly.plan.planned import planned_of
 from assembly.plan.schedule import people_curve
 
-TEXT, _ = design_text("vault")
+TEXT = design_text("vault")
 
 
 @settings(max_examples=5)

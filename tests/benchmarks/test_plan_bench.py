@@ -168,7 +168,7 @@ def test_time_grows_hardly_faster_than_the_number_of_parts(benchmark: BenchmarkF
 
 def test_the_vault_with_twice_the_geodesics(benchmark: BenchmarkFixture) -> None:
     """Four times the parts: graph, interlacing and order of a real gridshell, with every screw."""
-    text, _ = design_text("vault")
+    text = design_text("vault")
     gridshells = [gridshell_of(parse_design(text.replace("geodesics = 14", f"geodesics = {n}"))) for n in (14, 28)]
     sizes, seconds = [], []
     for gridshell in gridshells:

@@ -187,7 +187,7 @@ def test_a_ring_without_a_place_for_a_cut_names_the_key_that_moves_the_joints(
     ],
 )
 def test_keys_that_do_not_fit_the_kind_of_top_are_named(name: str, old: str, new: str, told: str) -> None:
-    text = design_text(name)[0]
+    text = design_text(name)
     assert old in text
     with pytest.raises(DesignError) as caught:
         parse_design(text.replace(old, new))
