@@ -5,30 +5,19 @@ from collections.abc import Iterator
 from itertools import combinations, product
 from typing import TypeAlias
 
-import networkx as nx
 import numpy as np
 
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
 from aag_cad.parts.model import Bolt, Gridshell, Joint, Part, Shell, all_joints
-from aag_cad.units import Floats
 from assembly.base.steps import Plan, Step
-from assembly.checks.plan import numbering_problems
+from assembly.checks.walking import ancestors, numbering_problems, surrounds
 
 # A place in the plan: the step, and the turn in it. A rule: why, what comes first, what then.
 _Place: TypeAlias = tuple[str, int]
 _Rule: TypeAlias = tuple[str, _Place, _Place]
 
 _LETTING_GO = ("open ridges", "lift off", "hang", "release geodesics", "pull edge planks", "lower")
-_LEAST_SUPPORTS = 3
-
-
-def _forced(plan: Plan) -> dict[str, set[str]]:
-    """Return for each step the steps that its predecessors force before it."""
-    graph: nx.DiGraph[str] = nx.DiGraph()
-    graph.add_nodes_from(step.id for step in plan.steps)
-    graph.add_edges_from((before, step.id) for step in plan.steps for before in step.predecessors)
-    return {step.id: set(nx.ancestors(graph, step.id)) for step in plan.steps}
 
 
 def _once(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
@@ -179,13 +168,6 @@ def _one_by_one(plan: Plan, forced: dict[str, set[str]]) -> Iterator[str]:
             yield f"{a} and {b}: nothing forces one to be lowered before the other hangs, but the hoists serve one"
 
 
-def _surrounded(corners: Floats, point: Floats) -> bool:
-    """Return whether a point (2,) lies in the convex hull of others (n, 2): these leave no half of its view free."""
-    angles = np.sort(np.arctan2(*(corners - point).T[::-1]))
-    gaps = np.diff(angles, append=angles[:1] + 2.0 * np.pi)
-    return bool(len(angles) >= _LEAST_SUPPORTS and gaps.max() < np.pi)
-
-
 def _propped(plan: Plan, shell: Shell) -> Iterator[str]:
     """Yield the steps that let go of what holds a shell while its centre of gravity is not over its feet and props."""
     joints = index_of(shell).joints
@@ -195,7 +177,7 @@ def _propped(plan: Plan, shell: Shell) -> Iterator[str]:
     centre = lengths @ middles / lengths.sum()
     for step in (step for phase in _LETTING_GO for step in _steps(plan, phase, shell.mark)):
         under = feet | {mark for mark in step.propped if mark in joints}
-        if not _surrounded(np.array([joints[mark].point for mark in sorted(under)])[:, :2], centre[:2]):
+        if not surrounds(np.array([joints[mark].point for mark in sorted(under)])[:, :2], centre[:2]):
             yield f"{shell.mark}: step {step.id} lets go of it, but its centre is not over its feet and props"
 
 
@@ -213,7 +195,7 @@ def check_disassembly(plan: Plan, gridshell: Gridshell) -> list[str]:
     every plank is measured after it has left.
     """
     leaves, lying = _places(plan, gridshell)
-    forced = _forced(plan)
+    forced = ancestors(plan)
     problems = [*numbering_problems(plan), *_once(plan, gridshell), *_one_by_one(plan, forced)]
     rules = [*_fastened(gridshell, leaves, lying), *_covered(gridshell, lying), *_measured(plan, leaves)]
     for shell in gridshell.shells:

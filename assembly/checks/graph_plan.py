@@ -9,6 +9,7 @@ import networkx as nx
 from aag_cad.parts.kinds import is_fastener
 from assembly.base.any_graph import as_multigraph
 from assembly.base.steps import Plan
+from assembly.checks.walking import ancestors, numbering_problems
 
 
 def _nodes(graph: "nx.MultiGraph[str]") -> Mapping[str, Mapping[str, Any]]:
@@ -36,25 +37,7 @@ def _once(plan: Plan, graph: "nx.MultiGraph[str]") -> Iterator[str]:
             yield f"{mark}: in no step, and no finding says why"
 
 
-def _ancestors(plan: Plan) -> tuple[dict[str, int], dict[str, int], list[str]]:
-    """Return the bit of each step, the bits of all that must be done before it, and what is wrong with its waiting."""
-    bits, before, faults = dict[str, int](), dict[str, int](), list[str]()
-    for i, step in enumerate(plan.steps):
-        if step.id in bits:
-            faults.append(f"step {step.id}: the id stands twice")
-        if step.number != i + 1:
-            faults.append(f"step {step.id}: number {step.number}, but it is the {i + 1}th")
-        mask = 0
-        for other in step.predecessors:
-            if other in bits:
-                mask |= bits[other] | before[other]
-            else:
-                faults.append(f"step {step.id}: waits for {other}, which does not come before it")
-        bits[step.id], before[step.id] = 1 << i, mask
-    return bits, before, faults
-
-
-def _buried(plan: Plan, graph: "nx.MultiGraph[str]", bits: dict[str, int], before: dict[str, int]) -> Iterator[str]:
+def _buried(plan: Plan, graph: "nx.MultiGraph[str]", before: dict[str, set[str]]) -> Iterator[str]:
     """Yield the planks that would have to go under one that may lie already, by a step that does not slide them in."""
     step_of = {mark: step for step in plan.steps for mark in step.marks}
     for a, b, edge in graph.edges(data=True):
@@ -64,18 +47,18 @@ def _buried(plan: Plan, graph: "nx.MultiGraph[str]", bits: dict[str, int], befor
         upper = edge.get("above") or max((a, b), key=lambda mark: layers[mark])
         lower = b if upper == a else a
         below, over = step_of[lower], step_of[upper]
-        if bits[below.id] & before[over.id]:
+        if below.id in before[over.id]:
             continue
-        if below.phase == "slide" and bits[over.id] & before[below.id]:
+        if below.phase == "slide" and over.id in before[below.id]:
             continue
         yield f"{lower}: step {below.id} puts it under {upper}, which step {over.id} may have laid before"
 
 
-def _unheld(plan: Plan, graph: "nx.MultiGraph[str]", bits: dict[str, int], before: dict[str, int]) -> Iterator[str]:
+def _unheld(plan: Plan, graph: "nx.MultiGraph[str]", before: dict[str, set[str]]) -> Iterator[str]:
     """Yield the parts that are put in before the planks that they are tied to, and fasteners before any member."""
     step_of = {mark: step for step in plan.steps for mark in step.marks}
     for step in plan.steps:
-        done = before[step.id] | bits[step.id]
+        done = before[step.id] | {step.id}
         for mark in (mark for mark in step.marks if mark in graph and not _flat(_nodes(graph)[mark])):
             home, fastens = _nodes(graph)[mark].get("beam"), is_fastener(_nodes(graph)[mark]["kind"])
             for other in sorted(graph[mark]):
@@ -84,11 +67,11 @@ def _unheld(plan: Plan, graph: "nx.MultiGraph[str]", bits: dict[str, int], befor
                 needed = (
                     node.get("beam") == home if home else _flat(node) or (fastens and not is_fastener(node["kind"]))
                 )
-                if needed and (other not in step_of or not bits[step_of[other].id] & done):
+                if needed and (other not in step_of or step_of[other].id not in done):
                     yield f"{mark}: step {step.id} puts it in before {other} is there"
 
 
-def _blocked(plan: Plan, graph: "nx.MultiGraph[str]", bits: dict[str, int], before: dict[str, int]) -> Iterator[str]:
+def _blocked(plan: Plan, graph: "nx.MultiGraph[str]", before: dict[str, set[str]]) -> Iterator[str]:
     """Yield the slides that come when a plank on their way may be fastened already: the others must lie loose."""
     tied: dict[str, list[tuple[str, str]]] = defaultdict(list)
     for step in (step for step in plan.steps if step.phase == "join"):
@@ -100,7 +83,7 @@ def _blocked(plan: Plan, graph: "nx.MultiGraph[str]", bits: dict[str, int], befo
             ways = {other: [edge["kind"] for edge in edges.values()] for other, edges in graph[mark].items()}
             for other in sorted(other for other, kinds in ways.items() if "crossing" in kinds):
                 for fastener, earlier in sorted(tied[other]):
-                    if not bits[step.id] & before[earlier]:
+                    if step.id not in before[earlier]:
                         yield f"{mark}: slid in by step {step.id}, but step {earlier} may fasten {other} by {fastener}"
 
 
@@ -111,13 +94,11 @@ def check_graph_plan(plan: Plan, graph: "nx.Graph[str]", people: int | None = No
     before the planks that it is tied to; the planks on the way of a slide loose; crews of 1 to ``people``.
     """
     several = as_multigraph(graph)
-    bits, before, faults = _ancestors(plan)
-    faults += _once(plan, several)
+    faults = [*numbering_problems(plan), *_once(plan, several)]
     if faults:
         return faults
-    faults += _buried(plan, several, bits, before)
-    faults += _unheld(plan, several, bits, before)
-    faults += _blocked(plan, several, bits, before)
+    before = ancestors(plan)
+    faults += [*_buried(plan, several, before), *_unheld(plan, several, before), *_blocked(plan, several, before)]
     for step in plan.steps:
         if step.crew < 1 or (people is not None and step.crew > people):
             faults.append(f"step {step.id}: {step.crew} people, allowed 1 to {people or 'any'}")

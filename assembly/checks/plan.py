@@ -11,21 +11,8 @@ from aag_cad.parts.model import Gridshell, Part, Shell, ridge_parts, shell_parts
 from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Segmentation
 from assembly.base.steps import Plan, Step
-from assembly.checks.stability import ancestors, locking_problems, prop_problems, travel_problems
-
-
-def numbering_problems(plan: Plan) -> Iterator[str]:
-    """Yield what is wrong with the numbers, ids and predecessors of any plan."""
-    seen: set[str] = set()
-    for i, step in enumerate(plan.steps, start=1):
-        if step.number != i:
-            yield f"step {step.id}: number {step.number}, expected {i}"
-        if step.id in seen:
-            yield f"step {step.id}: the id stands twice"
-        for before in step.predecessors:
-            if before not in seen:
-                yield f"step {step.id}: predecessor {before} does not come before it"
-        seen.add(step.id)
+from assembly.checks.stability import locking_problems, prop_problems, travel_problems
+from assembly.checks.walking import ancestors, numbering_problems
 
 
 def _once(plan: Plan, gridshell: Gridshell) -> Iterator[str]:

@@ -8,35 +8,17 @@ import numpy as np
 from aag_cad.parts.index import index_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Shell
-from aag_cad.units import Floats
 from assembly.base.locking_order import LockingOrder
 from assembly.base.phases import Phase
 from assembly.base.segments import Segment, Segmentation
 from assembly.base.steps import Plan, Step
+from assembly.checks.walking import ancestors, surrounds
 
 _LEAST_PROPS = 2
 
 
-def ancestors(plan: Plan) -> dict[str, set[str]]:
-    """Return for each step the ids of all steps that its predecessors force before it."""
-    found: dict[str, set[str]] = {}
-    for step in plan.steps:
-        found[step.id] = set(step.predecessors)
-        for before in step.predecessors:
-            found[step.id] |= found.get(before, set())
-    return found
-
-
 def _steps(plan: Plan, phase: Phase, shell: str) -> list[Step]:
     return [step for step in plan.steps if step.phase == phase and (step.shell == shell or shell in step.assemblies)]
-
-
-def _surrounds(corners: Floats, point: Floats) -> bool:
-    """Return whether a point (2,) lies inside the convex hull of points (n, 2): they leave no half of its view free."""
-    away = corners - point
-    angles = np.sort(np.arctan2(away[:, 1], away[:, 0]))
-    gaps = np.diff(np.append(angles, angles[0] + 2.0 * np.pi))
-    return bool(len(angles) > 2 and gaps.max() < np.pi)
 
 
 def _held(shell: Shell, segment: Segment, props: Sequence[str]) -> bool:
@@ -48,7 +30,7 @@ def _held(shell: Shell, segment: Segment, props: Sequence[str]) -> bool:
         for joint in shell.joints
         if joint.mark in props or (joint.kind == "foot" and own & set(joint.members))
     ]
-    return bool(points) and _surrounds(np.array(points)[:, :2], np.array(segment.centre)[:2])
+    return bool(points) and surrounds(np.array(points)[:, :2], np.array(segment.centre)[:2])
 
 
 def _stand_problems(
