@@ -16,17 +16,10 @@ from aag_cad.parts.model import Gridshell
 from aag_cad.parts.store import gridshell_json, read_gridshell
 from assembly.base.errors import PlanError
 from assembly.graph.faults import EDGE_KINDS, graph_problems
-from assembly.graph.files import (
-    graph_json,
-    graph_text,
-    graphml,
-    read_graph,
-    read_graphml,
-    shipped_graphs,
-    whole_graph,
-)
+from assembly.graph.files import graph_json, graph_text, graphml, read_graph, read_graphml, shipped_graphs
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import interlacing
+from assembly.graph.whole import whole_graph
 
 Graph = nx.MultiGraph
 
