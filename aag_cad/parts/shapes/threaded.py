@@ -6,6 +6,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from aag_cad.once import once
 from aag_cad.parts.model import Bolt, Rod, Screw
 from aag_cad.parts.shapes.prism import column_points
 from aag_cad.parts.shapes.shape import Shape
@@ -50,6 +51,7 @@ class Threaded:
     pieces: tuple[BoltPiece, ...]
 
 
+@once
 def bolt_form(bolt: Bolt) -> Threaded:
     """Return head, washer, shank, washer, nut and tip of a bolt; z = 0 is the face of the first plank."""
     t, nut = bolt.washer_thickness, bolt.grip + bolt.washer_thickness
@@ -64,6 +66,7 @@ def bolt_form(bolt: Bolt) -> Threaded:
     return Threaded(bolt.diameter, bolt.length, tuple(piece for piece in pieces if piece.high > piece.low))
 
 
+@once
 def rod_form(rod: Rod) -> Threaded:
     """Return shank, nuts and washers of a threaded rod from its lower end upwards."""
     (low, high), t, m, d = rod.nuts, rod.washer_thickness, rod.nut_height, rod.diameter
@@ -79,6 +82,7 @@ def rod_form(rod: Rod) -> Threaded:
     return Threaded(d, rod.length, pieces)
 
 
+@once
 def screw_form(screw: Screw) -> Threaded:
     """Return a screw as its plain shank, from the face of the plank."""
     shank = BoltPiece("shank", screw.diameter, 0.0, screw.length, screw.head_diameter)
