@@ -12,7 +12,7 @@ from aag_cad.language import LANGUAGES
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import colour_name
 from aag_cad.parts.model import Gridshell, all_joints, all_parts
-from assembly.base.names import family_name
+from assembly.drawing.names import family_name
 from assembly.pictures.step_pictures import NEW, PIECES, THERE
 
 # What a reader tells apart side by side in grey: about a seventh of the way from black to white.

@@ -9,9 +9,9 @@ import icalendar
 from aag_cad.files import write_bytes
 from aag_cad.language import Figure, Language, say
 from assembly.base.mark_ranges import joined_ranges
-from assembly.base.names import phase_name
 from assembly.base.steps import Plan, Step
 from assembly.booklet.step_words import StepWords, step_words
+from assembly.drawing.names import phase_name
 from assembly.plan.clock import Clock
 from assembly.plan.schedule import Schedule
 

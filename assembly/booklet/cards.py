@@ -14,11 +14,11 @@ from aag_cad.parts.marks import joint_of, shell_of, short_mark, whole_of
 from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Part, Plank, Shell, all_parts, shell_parts
 from assembly.base.mark_ranges import joined_ranges, mark_ranges
-from assembly.base.names import part_name, phase_name
 from assembly.base.part_groups import driven_from_outside
 from assembly.base.phases import PHASE, PHASES
 from assembly.base.steps import Plan, Step, carried
 from assembly.booklet.step_words import step_title, step_words
+from assembly.drawing.names import part_name, phase_name
 from assembly.plan.shape_control import control_figures, sling_points
 
 __all__ = ["part_rows", "phase_name", "qr_text", "step_card", "step_table", "totals"]

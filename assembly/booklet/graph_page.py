@@ -10,12 +10,12 @@ import numpy as np
 
 from aag_cad.language import Language
 from aag_cad.units import Floats
-from assembly.base.names import phase_name
 from assembly.base.steps import Plan, Step
 from assembly.booklet.contents import Booklet
 from assembly.booklet.phone_page import filled_page
 from assembly.booklet.step_words import step_title, step_words
 from assembly.booklet.words import booklet_words, finding_lines
+from assembly.drawing.names import phase_name
 from assembly.drawing.svg import Style, circle, group, label_svg, path, placed_labels, places_along, polylines, svg
 from assembly.graph.interlacing import Interlacing, interlacing
 from assembly.graph.laying_units import Unit, units_of

@@ -9,7 +9,7 @@ from aag_cad.families import BEAMS, FAMILIES, LAYERS
 from aag_cad.language import Language, figure, say
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Bolt, CrossSection, Shell
-from assembly.base.names import family_name
+from assembly.drawing.names import family_name
 from assembly.drawing.svg import Style, circle, group, line, polygon, rectangle, svg, text
 
 _INK = Style("#000")

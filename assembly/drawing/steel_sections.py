@@ -15,8 +15,8 @@ from aag_cad.parts.model import Blade, Bolt, FlatBar, Frame, Gridshell, Joint, P
 from aag_cad.parts.shapes.folded_plate import FoldedPlate, plate_rings
 from aag_cad.parts.shapes.threaded import BoltPiece, bolt_form, rod_form
 from aag_cad.units import Floats, vector
-from assembly.base.names import family_name
 from assembly.drawing.joint_sections import callout
+from assembly.drawing.names import family_name
 from assembly.drawing.part_outlines import Flat
 from assembly.drawing.svg import CHARACTER, Style, line, path, polygon, svg
 

@@ -18,9 +18,10 @@ from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Beam, CouplingBlock, Joint, Plank, Shell, Stud
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
-from assembly.base.names import LAYER_WORDS, family_name
+from assembly.base.names import LAYER_WORDS
 from assembly.base.shell_axes import shell_view
 from assembly.drawing.joint_sections import callout
+from assembly.drawing.names import family_name
 from assembly.drawing.svg import Style, group, line, path, rectangle, svg, text
 from assembly.laying.flattening import beam_width
 

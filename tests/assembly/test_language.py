@@ -15,13 +15,13 @@ from aag_cad.parts.model import ClampingBar, Gridshell, Mullion, Plank, Shell, S
 from aag_cad.parts.products import product_name
 from aag_cad.resources import template
 from assembly.base.locking_order import LockingOrder, LockingStep, Prop
-from assembly.base.names import part_name, phase_name
 from assembly.base.phases import DOWN_PHASES, PHASES, UP_PHASES, Phase
 from assembly.base.steps import Plan
 from assembly.booklet.cards import qr_text, step_card, totals
 from assembly.booklet.gantt import gantt_svg
 from assembly.booklet.step_words import StepWords, step_words
 from assembly.drawing.joint_sections import block_section_svg, node_section_svg
+from assembly.drawing.names import part_name, phase_name
 from assembly.drawing.steel_sections import blade_section_svg, foot_section_svg, strap_section_svg
 from assembly.pictures.locking_chart import locking_svg, locking_table
 from assembly.plan.assembly_plan import plan_of
