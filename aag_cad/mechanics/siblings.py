@@ -18,7 +18,7 @@ from aag_cad.errors import NetworkError
 from aag_cad.geometry.framed import curvatures_at, frames_at, nearest_station
 from aag_cad.geometry.surface import dot
 from aag_cad.parts.forming import formed_points, plank_axes
-from aag_cad.parts.model import Beam, Plank
+from aag_cad.parts.model import Beam, FlatBar
 from aag_cad.units import Floats, Ints
 
 # Plane curves are kept as complex numbers x + i y, mm.
@@ -84,7 +84,7 @@ def recovered_share(spacing: float, thickness: float) -> float:
     return 1.0 - 1.0 / (1.0 + 3.0 * spacing**2 / thickness**2)
 
 
-def _centre_stations(beam: Beam, plank: Plank) -> dict[str, tuple[float, float, int]]:
+def _centre_stations(beam: Beam, plank: FlatBar) -> dict[str, tuple[float, float, int]]:
     """Return for each joint the bolts' stations on the beam's curve and on the plank's centre line, and the holes.
 
     A bolt off the centre line of a twisted plank meets it later or sooner than on the centre line: by its offset times
@@ -103,7 +103,7 @@ def _centre_stations(beam: Beam, plank: Plank) -> dict[str, tuple[float, float, 
     return {joint: (*np.mean(found, axis=0).tolist(), len(found)) for joint, found in by_joint.items()}
 
 
-def coupled_pair(beam: Beam, left: Plank, right: Plank) -> CoupledPair:
+def coupled_pair(beam: Beam, left: FlatBar, right: FlatBar) -> CoupledPair:
     """Return the couplings of a beam, read from the bolt holes of its two planks.
 
     NetworkError if fewer than two joints are drilled in both.

@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 
 from aag_cad.geometry.framed import Frames, frames_at, nearest_station
 from aag_cad.geometry.surface import dot
-from aag_cad.parts.model import FlatBar, Plank
+from aag_cad.parts.model import FlatBar
 from aag_cad.units import Floats
 
 CORNER_DEGREE = 5
@@ -18,7 +18,7 @@ def plank_axes(plank: FlatBar, stations: Floats) -> tuple[Floats, Floats, Floats
     An upright plank turns its width to the surface normal, a flat one its thickness; so does every metal bar.
     """
     frames: Frames = frames_at(plank.curve, stations)
-    if isinstance(plank, Plank) and plank.upright:
+    if plank.upright:
         return frames.point, frames.tangent, frames.normal, -frames.binormal
     return frames.point, frames.tangent, frames.binormal, frames.normal
 

@@ -14,6 +14,7 @@ from aag_cad.parts.model import (
     CouplingBlock,
     Gridshell,
     Joint,
+    Member,
     Part,
     Plank,
     Screw,
@@ -139,7 +140,7 @@ class Index:
     @cached_property
     def stations(self) -> dict[tuple[str, str], float]:
         """The station of a joint on a plank or a beam, by the marks of both, mm."""
-        members: tuple[Beam | Plank, ...] = (*self.planks.values(), *self.beams.values())
+        members: tuple[Member, ...] = (*self.planks.values(), *self.beams.values())
         return {(member.mark, place.joint): place.station for member in members for place in member.joints}
 
     @cached_property
@@ -148,7 +149,7 @@ class Index:
         return {plank.mark: plank.beam or plank.mark for plank in self.planks.values()}
 
     @cached_property
-    def units(self) -> dict[str, Beam | Plank]:
+    def units(self) -> dict[str, Member]:
         """What is laid in one piece: the coupled beams, and the planks of no beam."""
         return {**self.beams, **{mark: plank for mark, plank in self.planks.items() if not plank.beam}}
 

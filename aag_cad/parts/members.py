@@ -12,7 +12,7 @@ from aag_cad.geometry.framed import FramedCurve, frames_at, nearest_station, off
 from aag_cad.network.model import CurveId, CurveNetwork
 from aag_cad.parts.forming import axis_piercings
 from aag_cad.parts.marks import Mark, part_mark
-from aag_cad.parts.model import Beam, Blank, CrossSection, Hole, HoleUse, JointStation, Plank
+from aag_cad.parts.model import Beam, Blank, CrossSection, Hole, HoleUse, JointStation, Member, Plank
 from aag_cad.units import Floats, Vector
 
 
@@ -70,7 +70,7 @@ def undrilled_members(design: Design, shell: int, network: CurveNetwork) -> tupl
     return beams, planks
 
 
-def stations_of(curve: Plank | Beam, points: Floats) -> Floats:
+def stations_of(curve: Member, points: Floats) -> Floats:
     """Return the arc-length stations (n,) on a plank or beam of the points (n, 3) nearest to it."""
     samples = curve.curve.points
     nearest = np.argmin(np.linalg.norm(points[:, None] - samples[None], axis=2), axis=1)
@@ -90,7 +90,7 @@ def drilled(plank: Plank, drillings: Iterable[Drilling]) -> Plank:
     return replace(plank, blank=replace(plank.blank, holes=ordered))
 
 
-def with_joints(member: Plank | Beam, joints: Iterable[tuple[str, Floats]]) -> tuple[JointStation, ...]:
+def with_joints(member: Member, joints: Iterable[tuple[str, Floats]]) -> tuple[JointStation, ...]:
     """Return the joint stations of a member, sorted, from joint marks and points (3,) near its curve."""
     listed = list(joints)
     if not listed:

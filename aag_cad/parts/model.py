@@ -6,7 +6,7 @@ blank, x along it from its start, y across its width and z through its thickness
 """
 
 from dataclasses import dataclass, field
-from typing import Literal, Protocol, TypeAlias
+from typing import ClassVar, Literal, Protocol, TypeAlias
 
 from aag_cad.families import Family
 from aag_cad.geometry.framed import FramedCurve
@@ -224,30 +224,26 @@ class Strip:
 
 
 @dataclass(frozen=True)
-class Mullion:
+class MetalBar:
+    """A flat bar of metal: it lies flat, as planks may, and in no beam."""
+
+    mark: str
+    curve: FramedCurve = field(repr=False)
+    blank: Blank
+    upright: ClassVar[bool] = False
+    beam: ClassVar[str] = ""
+
+
+class Mullion(MetalBar):
     """An aluminium bar along a geodesic, bent flat-ways over the outer beams; two strips lie on it."""
 
-    mark: str
-    curve: FramedCurve = field(repr=False)
-    blank: Blank
 
-
-@dataclass(frozen=True)
-class ClampingBar:
+class ClampingBar(MetalBar):
     """An aluminium bar over a mullion that clamps the edges of the strips."""
 
-    mark: str
-    curve: FramedCurve = field(repr=False)
-    blank: Blank
 
-
-@dataclass(frozen=True)
-class Strap:
+class Strap(MetalBar):
     """A flat steel bar on the end of a geodesic and the edge plank that it stops at, bent flat-ways to both."""
-
-    mark: str
-    curve: FramedCurve = field(repr=False)
-    blank: Blank
 
 
 @dataclass(frozen=True)
@@ -375,7 +371,8 @@ class Gridshell:
         return f"Gridshell {self.name}: {len(self.shells)} shells, {len(all_parts(self))} parts"
 
 
-FlatBar: TypeAlias = Plank | Mullion | ClampingBar | Strap
+FlatBar: TypeAlias = Plank | MetalBar
+Member: TypeAlias = Plank | Beam
 
 
 def shell_parts(shell: Shell) -> tuple[Part, ...]:

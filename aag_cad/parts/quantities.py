@@ -6,7 +6,7 @@ import numpy as np
 
 from aag_cad.geometry.framed import Curvatures, curvatures_at
 from aag_cad.parts.kinds import Material, kind_of, shaped
-from aag_cad.parts.model import FlatBar, Part, Plank, Timber
+from aag_cad.parts.model import FlatBar, Part, Timber
 from aag_cad.units import MM3_PER_M3
 
 STEEL_DENSITY = 7850.0
@@ -75,12 +75,10 @@ def _curvatures(plank: FlatBar) -> Curvatures:
 def smallest_radius(plank: FlatBar) -> float:
     """Return the smallest radius to which a plank or bar is bent about its weak axis, mm; infinite if straight."""
     curvatures = _curvatures(plank)
-    bending = float(
-        np.max(np.abs(curvatures.geodesic if isinstance(plank, Plank) and plank.upright else curvatures.normal))
-    )
+    bending = float(np.max(np.abs(curvatures.geodesic if plank.upright else curvatures.normal)))
     return 1.0 / bending if bending > STRAIGHT else math.inf
 
 
-def largest_twist(plank: Plank) -> float:
+def largest_twist(plank: FlatBar) -> float:
     """Return the largest twist of a plank, rad/mm, without sign."""
     return float(np.max(np.abs(_curvatures(plank).torsion)))

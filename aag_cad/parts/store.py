@@ -79,7 +79,7 @@ def value_of(kind: Any, data: Any, path: str) -> Any:
     if is_dataclass(kind) and isinstance(kind, type):
         if not isinstance(data, dict):
             raise FileError(f"{path}: expected an object, found {type(data).__name__}")
-        hints = _hints(kind)
+        hints = {f.name: _hints(kind)[f.name] for f in fields(kind)}
         unknown = sorted(set(data) - set(hints))
         missing = sorted(f.name for f in fields(kind) if f.name not in data and f.default is MISSING)
         if unknown or missing:

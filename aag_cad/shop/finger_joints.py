@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from aag_cad.design_making import Stock
 from aag_cad.findings import Finding
-from aag_cad.parts.model import Hole, Plank
+from aag_cad.parts.model import FlatBar, Hole
 from aag_cad.shop.stock import Piece, StockRules
 
 Interval: TypeAlias = tuple[float, float]
@@ -96,7 +96,7 @@ def _pieces(mark: str, length: float, joints: Sequence[FingerJoint], stock: Stoc
     return pieces
 
 
-def _too_long(plank: Plank, joints: Sequence[FingerJoint] | None, stock: Stock) -> Finding:
+def _too_long(plank: FlatBar, joints: Sequence[FingerJoint] | None, stock: Stock) -> Finding:
     longest = board_rules(stock).longest_cut
     if joints is None:
         remedy = (
@@ -114,7 +114,7 @@ def _too_long(plank: Plank, joints: Sequence[FingerJoint] | None, stock: Stock) 
 
 
 def plank_pieces(
-    planks: Iterable[Plank], stock: Stock
+    planks: Iterable[FlatBar], stock: Stock
 ) -> tuple[tuple[Piece, ...], tuple[FingerJoint, ...], tuple[Finding, ...]]:
     """Return what is cut for planks, where they are finger-jointed, and those that cannot be made (AAG901).
 

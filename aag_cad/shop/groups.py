@@ -15,7 +15,7 @@ from aag_cad.errors import DesignError
 from aag_cad.once import once
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import Blank, EndCut, Gridshell, Plank
+from aag_cad.parts.model import Blank, EndCut, FlatBar, Gridshell
 from aag_cad.units import Floats
 
 TOLERANCE = 0.05
@@ -53,7 +53,7 @@ class DrillGroup:
     """
 
     mark: str
-    master: Plank
+    master: FlatBar
     members: tuple[Member, ...]
     stack_limit: int
 
@@ -124,7 +124,7 @@ def _laid_as(master: Blank, blank: Blank, laid: Laid) -> tuple[int, ...] | None:
     return _paired(np.all(gaps <= reach, axis=2) & same_use.reshape(gaps.shape[:2]))
 
 
-def member_of(master: Plank, plank: Plank) -> Member | None:
+def member_of(master: FlatBar, plank: FlatBar) -> Member | None:
     """Return how a plank lies under the template of a master, None if no way of laying it makes them equal.
 
     Equal: length, section, end cuts and every hole (station, offset, diameter, slot) agree to 0.05 mm, uses are equal.
@@ -140,12 +140,12 @@ def member_of(master: Plank, plank: Plank) -> Member | None:
     return None
 
 
-def _shop_order(plank: Plank) -> tuple[str, int, str, int]:
+def _shop_order(plank: FlatBar) -> tuple[str, int, str, int]:
     mark = parse_mark(plank.mark)
     return mark.family, mark.index, mark.part, mark.shell
 
 
-def drill_groups(planks: Iterable[Plank], stack_limit: int = STACK_LIMIT) -> tuple[DrillGroup, ...]:
+def drill_groups(planks: Iterable[FlatBar], stack_limit: int = STACK_LIMIT) -> tuple[DrillGroup, ...]:
     """Return the drilling groups of planks, in the order of family, index and side; each plank is in one group.
 
     A plank joins the first group whose master it equals, so a group never spreads over more than 0.05 mm from its
@@ -153,7 +153,7 @@ def drill_groups(planks: Iterable[Plank], stack_limit: int = STACK_LIMIT) -> tup
     """
     if stack_limit < 1:
         raise DesignError(f"stack_limit: {stack_limit} planks cannot be clamped and drilled; give 1 or more")
-    drafts: list[tuple[Plank, list[Member]]] = []
+    drafts: list[tuple[FlatBar, list[Member]]] = []
     cells: dict[tuple[int, int], list[int]] = {}
     for plank in sorted(planks, key=_shop_order):
         count, length = len(plank.blank.holes), plank.blank.length
@@ -179,12 +179,12 @@ def templates_of(gridshell: Gridshell) -> tuple[DrillGroup, ...]:
     return drill_groups(index_of(gridshell).planks.values())
 
 
-def drawn_face(plank: Plank) -> str:
+def drawn_face(plank: FlatBar) -> str:
     """Return which face of a blank its drawings show, and which edge is up."""
     return "its right-hand face, outer edge up" if plank.upright else "its outer face, left edge up"
 
 
-def drilled_joints(group: DrillGroup, planks: Mapping[str, Plank]) -> tuple[tuple[str, ...], ...]:
+def drilled_joints(group: DrillGroup, planks: Mapping[str, FlatBar]) -> tuple[tuple[str, ...], ...]:
     """Return for each hole of the master the marks of the joints that it serves, member by member."""
     return tuple(
         tuple(planks[member.mark].blank.holes[member.holes[i]].joint for member in group.members)

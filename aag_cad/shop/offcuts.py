@@ -15,7 +15,7 @@ from scipy.optimize import LinearConstraint
 from aag_cad.design_making import Stock, Timber
 from aag_cad.errors import FileError
 from aag_cad.findings import Finding
-from aag_cad.parts.model import Blank, CrossSection, Hole, Plank
+from aag_cad.parts.model import Blank, CrossSection, FlatBar, Hole
 from aag_cad.shop.passports import REUSE_HEADER
 from aag_cad.shop.stock import times_cut
 
@@ -265,7 +265,7 @@ def _chosen(columns: Sequence[tuple[int, tuple[_Cut, ...]]], supply: Sequence[in
     return times_cut(-worth / 1000.0, LinearConstraint(rows, -np.inf, np.array([*supply, *demand])))[0]
 
 
-def reused_planks(planks: Iterable[Plank], offcuts: Iterable[OldPlank], stock: Stock) -> tuple[Reused, ...]:
+def reused_planks(planks: Iterable[FlatBar], offcuts: Iterable[OldPlank], stock: Stock) -> tuple[Reused, ...]:
     """Return what is cut from old planks, as much length of new planks as can be, sorted by old mark and start.
 
     Old and new planks that are equal count as kinds; each kind of old plank is cut in the ways of ``_cuttings``.

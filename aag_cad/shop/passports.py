@@ -9,7 +9,7 @@ from aag_cad.errors import DesignError
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.mechanics.checks.lamella import LamellaStress, lamella_stress
 from aag_cad.parts.index import sorted_planks
-from aag_cad.parts.model import Blank, CrossSection, Gridshell, Plank, Timber
+from aag_cad.parts.model import Blank, CrossSection, FlatBar, Gridshell, Timber
 from aag_cad.parts.quantities import largest_twist, smallest_radius
 from aag_cad.units import Floats
 
@@ -54,7 +54,7 @@ class Passport:
     creep leaves is not known before the plank is measured, so there is no figure for it.
     """
 
-    plank: Plank
+    plank: FlatBar
     timber: Timber
     design: str
     service_life_years: float
@@ -76,7 +76,7 @@ class Passport:
         return self.stress.torsion / self.timber.shear_strength
 
 
-def strain_along(plank: Plank, spacing: float = _SPACING) -> Strain:
+def strain_along(plank: FlatBar, spacing: float = _SPACING) -> Strain:
     """Return how a plank is bent and twisted, sampled about every ``spacing`` mm from end to end."""
     stations = np.linspace(0.0, plank.curve.length, max(2, round(plank.curve.length / spacing) + 1))
     curvatures = curvatures_at(plank.curve, stations)
@@ -114,7 +114,9 @@ def _first_peak(stations: Floats, values: Floats) -> float:
     return float(stations[np.argmax(sizes >= 0.999 * sizes.max())])
 
 
-def passport(plank: Plank, timber: Timber, design: str, *, service_life_years: float = SERVICE_LIFE_YEARS) -> Passport:
+def passport(
+    plank: FlatBar, timber: Timber, design: str, *, service_life_years: float = SERVICE_LIFE_YEARS
+) -> Passport:
     """Return the passport of a plank.
 
     The paper, section 5, plans to take the gridshell down after two years and to reuse its planks. DesignError if the

@@ -11,7 +11,7 @@ from aag_cad.design import Design
 from aag_cad.findings import Finding
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import kind_of, shaped
-from aag_cad.parts.model import Gridshell, JointKind, Part, Plank, all_parts
+from aag_cad.parts.model import FlatBar, Gridshell, JointKind, Part, all_parts
 from aag_cad.parts.quantities import STEEL_DENSITY, density, mass, material_name, sizes, volume
 from aag_cad.parts.shapes.folded_plate import FOLDED_PLATE
 from aag_cad.parts.shapes.prism import PRISM
@@ -127,7 +127,7 @@ def _bars(gridshell: Gridshell, design: Design) -> tuple[list[CutStock], list[Fi
 
 
 def _boards(
-    planks: Sequence[Plank], gridshell: Gridshell, design: Design
+    planks: Sequence[FlatBar], gridshell: Gridshell, design: Design
 ) -> tuple[CutStock, tuple[FingerJoint, ...], tuple[Finding, ...]]:
     """Return the boards for new planks with their cuts, their finger joints, and the planks that no board gives."""
     stock, timber, bought = design.stock, design.timber, kind_of(gridshell.shells[0].planks[0]).bought

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from aag_cad.families import FAMILIES
 from aag_cad.language import Language, figure, say, says, words_table
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import is_driven, kind_of
-from aag_cad.parts.marks import joint_of, shell_of, short_mark, whole_of
+from aag_cad.parts.marks import joint_of, parse_mark, shell_of, short_mark, whole_of
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Gridshell, Part, Plank, Shell, all_parts, shell_parts
+from aag_cad.parts.model import Gridshell, Part, Shell, all_parts, shell_parts
 from assembly.base.mark_ranges import joined_ranges, mark_ranges
 from assembly.base.part_groups import driven_from_outside
 from assembly.base.phases import PHASE, PHASES
@@ -231,8 +232,8 @@ def _counted(parts: tuple[Part, ...], weights: Weights, language: Language) -> d
     groups: dict[str, tuple[int, float]] = {}
     for part in parts:
         name = part_name(part, language)
-        if isinstance(part, Plank):
-            name = say(language, "cards.totals.planks", family=part.family)
+        if (family := parse_mark(part.mark).family) in FAMILIES:
+            name = say(language, "cards.totals.planks", family=family)
         count, mass = groups.get(name, (0, 0.0))
         groups[name] = count + 1, mass + weights[part.mark][0]
     return groups

@@ -7,7 +7,7 @@ import numpy as np
 from aag_cad.colours import LEGEND
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import number_of, parse_mark, short_mark
-from aag_cad.parts.model import Beam, CouplingBlock, Plank, Shell
+from aag_cad.parts.model import Beam, CouplingBlock, FlatBar, Shell
 from assembly.drawing.svg import Style, circle, group, label_svg, placed_labels, rectangle, svg, text
 
 _BLOCK = Style("#000")
@@ -23,7 +23,7 @@ _NUMBER = 20.0
 
 
 def _strip(
-    beam: Beam, planks: Sequence[Plank], blocks: dict[str, CouplingBlock], y: float, scale: float
+    beam: Beam, planks: Sequence[FlatBar], blocks: dict[str, CouplingBlock], y: float, scale: float
 ) -> Iterator[str]:
     """Yield one beam seen from outside, its left plank above; ``y`` is the middle of its gap."""
     half = _GAP_HEIGHT / 2.0

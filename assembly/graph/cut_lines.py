@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Beam, Joint, JointStation, Plank, Shell
+from aag_cad.parts.model import Beam, FlatBar, Joint, JointStation, Member, Shell
 from assembly.base.errors import PlanError
 
 
@@ -86,9 +86,7 @@ class CutLines:
         return frozenset(self.bay(bay) for bay in range(low, high))
 
 
-def _listed(
-    member: Beam | Plank, joints: dict[str, Joint], lines: dict[str, int]
-) -> Iterator[tuple[JointStation, int]]:
+def _listed(member: Member, joints: dict[str, Joint], lines: dict[str, int]) -> Iterator[tuple[JointStation, int]]:
     """Yield the joints of a member with a geodesic, and its line."""
     for place in member.joints:
         joint = joints.get(place.joint)
@@ -96,7 +94,7 @@ def _listed(
             yield place, line
 
 
-def _direction(member: Beam | Plank, place: JointStation, line: int, geodesics: tuple[Plank, ...]) -> int:
+def _direction(member: Member, place: JointStation, line: int, geodesics: tuple[FlatBar, ...]) -> int:
     """Return in which bay a member goes on where it crosses just one line, by the nearest neighbour of that line."""
     up = line < len(geodesics)
     neighbour = geodesics[line if up else line - 2].curve.points
@@ -107,7 +105,7 @@ def _direction(member: Beam | Plank, place: JointStation, line: int, geodesics: 
 
 
 def _cut_member(
-    member: Beam | Plank, joints: dict[str, Joint], lines: dict[str, int], geodesics: tuple[Plank, ...]
+    member: Member, joints: dict[str, Joint], lines: dict[str, int], geodesics: tuple[FlatBar, ...]
 ) -> CutMember:
     listed, n = list(_listed(member, joints, lines)), len(lines)
     steps = []
@@ -129,7 +127,7 @@ def _cut_member(
             for i, (place, line) in enumerate(listed)
         ),
         tuple(place.station for place in member.joints if place.joint in joints and joints[place.joint].kind == "AA"),
-        isinstance(member, Plank),
+        not isinstance(member, Beam),
     )
 
 
@@ -143,7 +141,7 @@ def cut_lines(shell: Shell) -> CutLines:
         raise PlanError(f"{shell.mark}: {len(geodesics)} geodesics, at least 3 to cut along; carry the shell whole")
     lines = {plank.mark: i for i, plank in enumerate(geodesics, start=1)}
     joints = index_of(shell).joints
-    crossing: list[Beam | Plank] = [*shell.beams, *index_of(shell).edges.values()]
+    crossing: list[Member] = [*shell.beams, *index_of(shell).edges.values()]
     members = tuple(_cut_member(member, joints, lines, geodesics) for member in crossing)
     lone = [member.mark for member in members if not member.places]
     if lone:

@@ -14,7 +14,7 @@ from aag_cad.families import EDGES
 from aag_cad.geometry.framed import frames_at
 from aag_cad.mechanics.siblings import geodesic_turn, plane_curve
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Beam, Joint, Plank, Shell
+from aag_cad.parts.model import Beam, Joint, Member, Shell
 from aag_cad.units import Floats, Ints
 from assembly.base.errors import PlanError
 from assembly.base.shell_axes import shell_view
@@ -91,7 +91,7 @@ def is_ring(shell: Shell) -> bool:
         return False
 
 
-def _stations(member: Beam | Plank) -> tuple[Floats, dict[str, int]]:
+def _stations(member: Member) -> tuple[Floats, dict[str, int]]:
     """Return the stations of a member's ends and joints, those that coincide once, and the place of each joint."""
     ends = [(0.0, ""), (member.curve.length, "")]
     stations: list[float] = []
@@ -109,7 +109,7 @@ def _around(points: Floats, centre: Floats) -> Floats:
     return np.unwrap(np.arctan2(points[:, 1] - centre[1], points[:, 0] - centre[0]))
 
 
-def _laid_out(shell: Shell, members: list[Beam | Plank], ring: bool) -> tuple[dict[str, Floats], float]:
+def _laid_out(shell: Shell, members: list[Member], ring: bool) -> tuple[dict[str, Floats], float]:
     """Return where the joints and ends of members lie to begin with, (k, 2) by mark, and how near the same place is.
 
     Seen square on; a ring is rolled out as the cylinder of its mean radius, cut open beside its first geodesic, each
@@ -125,7 +125,7 @@ def _laid_out(shell: Shell, members: list[Beam | Plank], ring: bool) -> tuple[di
     radius = float(np.linalg.norm((every - centre)[:, :2], axis=1).mean())
     # Who looks against the normals of a ring may stand within it: then the angle grows to the left.
     side = math.copysign(1.0, float(((every - centre) * normals)[:, :2].sum()))
-    geodesics = [member for member in members if isinstance(member, Plank)]
+    geodesics = [member for member in members if not isinstance(member, Beam)]
     seam = float(_around(geodesics[0].curve.points, centre).mean()) - math.pi / len(geodesics)
     flat = {}
     for mark, points in places.items():
@@ -207,7 +207,7 @@ def _crossed(shell: Shell) -> dict[str, tuple[str, str]]:
 def shell_net(shell: Shell) -> Net:
     """Return the net of a shell; PlanError if it has no beams that cross on studs."""
     geodesics = list(index_of(shell).geodesics.values())
-    members: list[Beam | Plank] = [*shell.beams, *geodesics]
+    members: list[Member] = [*shell.beams, *geodesics]
     begin, near = _laid_out(shell, members, is_ring(shell))
     places = {member.mark: _stations(member)[1] for member in members}
 
@@ -232,7 +232,7 @@ def shell_net(shell: Shell) -> Net:
     return Net(start / met[:, None], chains, tuple(scissors), tuple(rays), tuple(sorted(left_open)))
 
 
-def _ray(plank: Plank, pairs: dict[str, tuple[str, str]], chains: dict[str, Chain], left_open: set[str]) -> Ray:
+def _ray(plank: Member, pairs: dict[str, tuple[str, str]], chains: dict[str, Chain], left_open: set[str]) -> Ray:
     joints, points, stations = [], [], []
     for place in plank.joints:
         if place.joint not in pairs or place.joint in left_open:

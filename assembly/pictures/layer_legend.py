@@ -15,7 +15,7 @@ from aag_cad.geometry.framed import frames_at
 from aag_cad.geometry.surface import unit
 from aag_cad.language import Language, figure, say
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Beam, CouplingBlock, Joint, Plank, Shell, Stud
+from aag_cad.parts.model import Beam, CouplingBlock, Joint, Member, Shell, Stud
 from aag_cad.units import Floats
 from assembly.base.errors import PlanError
 from assembly.base.names import LAYER_WORDS
@@ -61,7 +61,7 @@ class _Node:
     block: CouplingBlock
 
 
-def _beside(stud: Stud, joint: Joint, shell: Shell) -> tuple[Beam, Beam, CouplingBlock, Plank, float] | None:
+def _beside(stud: Stud, joint: Joint, shell: Shell) -> tuple[Beam, Beam, CouplingBlock, Member, float] | None:
     """Return lower and upper beam of a stud, the next block on the lower one with its geodesic, and how far.
 
     The block is the next one to the right of the stud for who looks along the geodesic from outside.
@@ -82,7 +82,7 @@ def _beside(stud: Stud, joint: Joint, shell: Shell) -> tuple[Beam, Beam, Couplin
     return None
 
 
-def _tangent(member: Beam | Plank, joint: str) -> Floats:
+def _tangent(member: Member, joint: str) -> Floats:
     station = next(place.station for place in member.joints if place.joint == joint)
     return np.asarray(frames_at(member.curve, np.array([station])).tangent[0])
 

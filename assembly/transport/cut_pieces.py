@@ -8,10 +8,10 @@ from itertools import pairwise
 import numpy as np
 
 from aag_cad.parts.forming import formed_points
-from aag_cad.parts.index import index_of
+from aag_cad.parts.index import Index, index_of
 from aag_cad.parts.kinds import is_driven, parts_at
 from aag_cad.parts.mesh import shell_mesh
-from aag_cad.parts.model import Joint, Part, Plank, Shell, Timber, shell_parts
+from aag_cad.parts.model import FlatBar, Joint, Part, Shell, Timber, shell_parts
 from aag_cad.parts.quantities import mass
 from aag_cad.units import Floats
 from assembly.base.segments import PlankPiece, Splice
@@ -50,14 +50,15 @@ class Divisible:
     edge_splices: dict[tuple[str, int], Splice]
 
     @cached_property
-    def planks(self) -> dict[str, Plank]:
-        """The planks by mark."""
-        return index_of(self.shell).planks
+    def index(self) -> Index:
+        """What the shell holds, by mark."""
+        return index_of(self.shell)
 
     @cached_property
     def small(self) -> dict[str, Part]:
         """Studs, coupling blocks, bolts, screws and straps by mark."""
-        return {part.mark: part for part in parts_at(shell_parts(self.shell), "shell") if part.mark not in self.planks}
+        parts = parts_at(shell_parts(self.shell), "shell")
+        return {part.mark: part for part in parts if part.mark not in self.index.planks}
 
     @cached_property
     def masses(self) -> dict[str, float]:
@@ -85,20 +86,20 @@ class Divisible:
         return {
             mark: shell_mesh(part).vertices
             for mark, part in self.small.items()
-            if mark not in index_of(self.shell).blocks and not is_driven(part)
+            if mark not in self.index.blocks and not is_driven(part)
         }
 
     @cached_property
     def rings(self) -> dict[str, tuple[Floats, Floats]]:
         """Stations (n,) and corners (n, 4, 3) of each plank, with a ring at every possible cut."""
-        cuts: dict[str, set[float]] = {mark: set() for mark in self.planks}
+        cuts: dict[str, set[float]] = {mark: set() for mark in self.index.planks}
         for splice in (*self.beam_splices.values(), *self.edge_splices.values()):
             for cut in splice.cuts:
                 cuts[cut.plank].add(cut.station)
-        return {mark: _rings(plank, cuts[mark]) for mark, plank in self.planks.items()}
+        return {mark: _rings(plank, cuts[mark]) for mark, plank in self.index.planks.items()}
 
 
-def _rings(plank: Plank, cuts: set[float]) -> tuple[Floats, Floats]:
+def _rings(plank: FlatBar, cuts: set[float]) -> tuple[Floats, Floats]:
     length, section = plank.blank.length, plank.blank.section
     even = np.linspace(0.0, length, max(2, int(np.ceil(length / CORNER_SPACING)) + 1))
     stations = np.array(sorted({*even.tolist(), *cuts}))
@@ -163,7 +164,7 @@ def _intervals(
                 PlankPiece(
                     mark,
                     cuts[i - 1][k].station if i else 0.0,
-                    cuts[i][k].station if i < len(cuts) else item.planks[mark].blank.length,
+                    cuts[i][k].station if i < len(cuts) else item.index.planks[mark].blank.length,
                 )
                 for k, mark in enumerate(member.planks)
             )
@@ -181,23 +182,23 @@ def _held(item: Divisible, spans: dict[str, list[PlankPiece]], joint: Joint) -> 
 
 def _past_end(item: Divisible, piece: PlankPiece, at: float) -> bool:
     """Return whether a joint sits just past an end of the whole plank that the piece holds."""
-    length = item.planks[piece.plank].blank.length
+    length = item.index.planks[piece.plank].blank.length
     return (at <= 0.0 and piece.start == 0.0) or (at >= length and piece.end == length)
 
 
 def _joint_parts(item: Divisible, spans: dict[str, list[PlankPiece]]) -> Iterator[str]:
     """Yield what the joints of a stretch hold: all if all planks are there, of a beam alone its block and bolts."""
     for joint in (joint for joint in item.shell.joints if joint.kind in _CARRIED_JOINTS):
-        planks = [mark for mark in joint.members if mark in item.planks]
+        planks = [mark for mark in joint.members if mark in item.index.planks]
         held = _held(item, spans, joint)
         small = [mark for mark in (*joint.members, *joint.fasteners) if mark in item.small]
         if len(held) == len(planks):
             yield from small
-        elif joint.kind in ("AG", "boundary") and any(item.planks[mark].beam for mark in held):
+        elif joint.kind in ("AG", "boundary") and any(item.index.planks[mark].beam for mark in held):
             yield from (mark for mark in small if not is_driven(item.small[mark]))
 
 
-def _piece_plank(plank: Plank, piece: PlankPiece, left_out: frozenset[str]) -> Plank:
+def _piece_plank(plank: FlatBar, piece: PlankPiece, left_out: frozenset[str]) -> FlatBar:
     kept = frozenset[str]() if not plank.upright else left_out
     holes = tuple(h for h in plank.blank.holes if piece.start < h.station < piece.end and h.joint not in kept)
     return replace(plank, blank=replace(plank.blank, length=piece.end - piece.start, holes=holes))
@@ -212,7 +213,7 @@ def _station(item: Divisible, splice: Splice) -> float:
 
 def _spans(item: Divisible, start: int, end: int) -> dict[str, list[PlankPiece]]:
     geodesics = [item.grid.lines[line - 1] for line in item.grid.owned(start, end)]
-    spans = {mark: [PlankPiece(mark, 0.0, item.planks[mark].blank.length)] for mark in geodesics}
+    spans = {mark: [PlankPiece(mark, 0.0, item.index.planks[mark].blank.length)] for mark in geodesics}
     cut: dict[str, dict[float, Splice]] = {}
     for splice in (splice for stop in cut_stops(item.grid, start, end) for splice in stop_splices(item, stop)):
         cut.setdefault(splice.member, {})[_station(item, splice)] = splice
@@ -235,12 +236,12 @@ def stretch_between(item: Divisible, start: int, end: int) -> Stretch:
     for mark, held in spans.items():
         stations, rings = item.rings[mark]
         for piece in held:
-            masses.append(mass(_piece_plank(item.planks[mark], piece, left_out), item.timber))
+            masses.append(mass(_piece_plank(item.index.planks[mark], piece, left_out), item.timber))
             samples = np.linspace(piece.start, piece.end, _CENTRE_SAMPLES)
-            line = item.planks[mark].curve.point_spline(samples)
+            line = item.index.planks[mark].curve.point_spline(samples)
             centres.append((line[:-1] + line[1:]).mean(axis=0) / 2.0)
             corners.append(rings[(stations >= piece.start) & (stations <= piece.end)].reshape(-1, 3))
-            if piece.start == 0.0 and piece.end == item.planks[mark].blank.length:
+            if piece.start == 0.0 and piece.end == item.index.planks[mark].blank.length:
                 whole.append(mark)
             else:
                 pieces.append(piece)

@@ -9,7 +9,7 @@ import numpy as np
 
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import joint_of
-from aag_cad.parts.model import Plank, Shell
+from aag_cad.parts.model import FlatBar, Shell
 from assembly.base.segments import Segment, Segmentation, Splice, segments_of
 from assembly.graph.cut_lines import cut_lines
 
@@ -64,7 +64,7 @@ def _reach(
         found.append(float(np.linalg.norm(middle - end, axis=1).min()))
     spliced, joints = {splice.joint for splice in cut}, index_of(shell).joints
     for joint in (joints[mark] for mark in dict.fromkeys(map(joint_of, fasteners)) if mark not in spliced):
-        ends: list[Plank] = [planks[mark] for mark in joint.members if mark in planks and planks[mark].upright]
+        ends: list[FlatBar] = [planks[mark] for mark in joint.members if mark in planks and planks[mark].upright]
         at = [(stations[plank.mark, joint.mark], plank.blank.length) for plank in ends]
         found += [min(station, length - station) for station, length in at]
     return max(found)

@@ -77,7 +77,7 @@ def _outermost(
     grid = item.grid
     placed = {2 * bay + 1: columns.get(grid.bay(bay), []) for bay in range(start // 2 - 1, end // 2 + 1)}
     for line in range((start + 1) // 2, (end + 1) // 2):
-        geodesic = item.planks[grid.lines[grid.line(2 * line) - 1]]
+        geodesic = item.index.planks[grid.lines[grid.line(2 * line) - 1]]
         placed[2 * line] = _rising((place.joint for place in geodesic.joints if place.joint in blocks), blocks)
     filled = [placed[at] for at in sorted(placed) if len(placed[at]) > 1]
     return (filled[0], filled[-1]) if len(filled) > 1 else ([], [])

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from aag_cad.mechanics.checks.fastener_spacing import bolt_distances
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Hole, Plank, Shell
+from aag_cad.parts.model import FlatBar, Hole, Shell
 from assembly.base.segments import PlankCut, Splice
 from assembly.graph.cut_lines import CutLines, CutMember, CutPlace
 
@@ -92,7 +92,7 @@ def _beside(member: CutMember, stop: int, line: int) -> Iterator[tuple[float, fl
                 yield place.station, member.places[other].station
 
 
-def _edge_splice(plank: Plank, line: str, span: tuple[float, float], diameter: float) -> Splice:
+def _edge_splice(plank: FlatBar, line: str, span: tuple[float, float], diameter: float) -> Splice:
     """Return the splice of an edge plank between two of its joints, in the widest gap between holes."""
     low, high = min(span), max(span)
     stations = sorted({low, high, *(hole.station for hole in plank.blank.holes if low < hole.station < high)})

@@ -13,7 +13,7 @@ from aag_cad.errors import FileError
 from aag_cad.families import FAMILIES
 from aag_cad.files import write_bytes
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Gridshell, Plank
+from aag_cad.parts.model import FlatBar, Gridshell
 from aag_cad.units import Floats
 
 _NAMESPACE = uuid.uuid5(uuid.NAMESPACE_DNS, "aag-toolkit rhino")
@@ -57,12 +57,12 @@ def write_3dm(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     write_bytes(path, _without_clock(base64.b64decode(archive.Encode())))
 
 
-def _user_text(plank: Plank) -> dict[str, str]:
+def _user_text(plank: FlatBar) -> dict[str, str]:
     texts = {"mark": plank.mark, "length_mm": f"{plank.blank.length:.3f}"}
     return {**texts, "beam": plank.beam} if plank.beam else texts
 
 
-def _nurbs(rhino: Any, plank: Plank, placement: Floats) -> Any:
+def _nurbs(rhino: Any, plank: FlatBar, placement: Floats) -> Any:
     """Return a plank's centre line, moved by a (4, 4) matrix, by arc length in mm."""
     spline = plank.curve.point_spline
     points = spline.c @ placement[:3, :3].T + placement[:3, 3]

@@ -5,8 +5,8 @@ import numpy as np
 from aag_cad.export.ifc.brep import advanced_brep
 from aag_cad.export.ifc.frame import Entity, IfcModel
 from aag_cad.parts.forming import plank_axes
-from aag_cad.parts.kinds import colour, colour_name, shaped
-from aag_cad.parts.model import Part, Plank
+from aag_cad.parts.kinds import colour, colour_name, kind_of, shaped
+from aag_cad.parts.model import FlatBar, Part
 from aag_cad.parts.shapes.bar import BAR, MESH_SPACING
 from aag_cad.parts.shapes.threaded import THREADED, Threaded
 from aag_cad.parts.triangles import Mesh, regular_polygon
@@ -95,7 +95,7 @@ def _body(model: IfcModel, part: Part) -> tuple[str, list[Entity]]:
     return "Tessellation", [face_set(model, mesh)]
 
 
-def _axis(model: IfcModel, plank: Plank) -> Entity:
+def _axis(model: IfcModel, plank: FlatBar) -> Entity:
     """Return the centre line of a formed plank through the centres of the rings of its body."""
     count = max(2, int(np.ceil(plank.blank.length / MESH_SPACING)) + 1)
     centres = plank_axes(plank, np.linspace(0.0, plank.blank.length, count))[0]
@@ -124,8 +124,8 @@ def representation_maps(model: IfcModel, part: Part, style: Entity) -> list[Enti
     for item in items:
         model.new("IfcStyledItem", item, [style])
     shapes = [model.new("IfcShapeRepresentation", model.body, "Body", kind, items)]
-    if isinstance(part, Plank):
-        axis = _axis(model, part)
+    if kind_of(part).ifc.predefined == "MEMBER":
+        axis = _axis(model, kind_of(part).form(part))
         shapes.append(model.new("IfcShapeRepresentation", model.axis, "Axis", "Curve3D", [axis]))
     return [model.new("IfcRepresentationMap", model.identity, shape) for shape in shapes]
 

@@ -8,7 +8,7 @@ from aag_cad.export.ifc.frame import Entity, IfcModel
 from aag_cad.export.ifc.options import IfcSchema
 from aag_cad.export.ifc.sets import Property, Quantity, write_property_set, write_quantities
 from aag_cad.parts.kinds import kind_of, shaped
-from aag_cad.parts.model import Part, Plank, Timber
+from aag_cad.parts.model import FlatBar, Part, Timber
 from aag_cad.parts.products import product_name
 from aag_cad.parts.quantities import density, gross_volume, mass, section_area, sizes, volume
 from aag_cad.parts.shapes.sheet import SHEET, flat_pattern
@@ -135,7 +135,7 @@ def write_product_sets(
 
 
 def write_serial_numbers(
-    model: IfcModel, planks: Sequence[Plank], occurrences: Mapping[str, Entity], groups: Mapping[str, str]
+    model: IfcModel, planks: Sequence[FlatBar], occurrences: Mapping[str, Entity], groups: Mapping[str, str]
 ) -> None:
     """Write the mark of each plank as its serial number and its drilling group as the batch that it is made in."""
     for plank in planks:

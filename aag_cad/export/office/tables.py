@@ -6,10 +6,10 @@ from collections.abc import Iterable
 
 from aag_cad.files import write_csv
 from aag_cad.mechanics.checks.lamella import lamella_stress
-from aag_cad.parts.index import sorted_planks
+from aag_cad.parts.index import index_of, sorted_planks
 from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.marks import parse_mark, shell_of
-from aag_cad.parts.model import Gridshell, Part, Plank, Timber, all_parts
+from aag_cad.parts.model import FlatBar, Gridshell, Part, Timber, all_parts
 from aag_cad.parts.products import product_name
 from aag_cad.parts.quantities import hole_count, largest_twist, mass, material_name, sizes, smallest_radius
 from aag_cad.units import deg_per_m
@@ -29,36 +29,36 @@ CHECKS_HEADER = (
 HOLES_HEADER = ("mark", "number", "station_mm", "offset_mm", "diameter_mm", "use", "joint", "spacing_mm")
 
 
-def _strain(part: Part) -> tuple[str, str]:
+def _strain(plank: FlatBar | None) -> tuple[str, str]:
     """Return smallest radius and largest twist as printed; a straight plank and every other part leaves them empty."""
-    if not isinstance(part, Plank):
+    if plank is None:
         return "", ""
-    radius = smallest_radius(part)
-    return "" if math.isinf(radius) else f"{radius:.0f}", f"{deg_per_m(largest_twist(part)):.2f}"
+    radius = smallest_radius(plank)
+    return "" if math.isinf(radius) else f"{radius:.0f}", f"{deg_per_m(largest_twist(plank)):.2f}"
 
 
 def part_row(part: Part, gridshell: Gridshell) -> tuple[str, ...]:
     """Return one line of the part table, in the order of ``PARTS_HEADER``."""
-    length, width, thickness = sizes(part)
+    (length, width, thickness), plank = sizes(part), index_of(gridshell).planks.get(part.mark)
     return (
         part.mark,
         kind_of(part).name,
         product_name(part),
         parse_mark(part.mark).family,
         shell_of(part.mark),
-        part.beam if isinstance(part, Plank) else "",
+        plank.beam if plank else "",
         f"{length:.1f}",
         f"{width:g}",
         f"{thickness:g}",
         str(hole_count(part)),
         f"{mass(part, gridshell.timber):.4f}",
-        *_strain(part),
+        *_strain(plank),
         material_name(part, gridshell.timber),
         "1",
     )
 
 
-def hole_rows(plank: Plank) -> list[tuple[str, ...]]:
+def hole_rows(plank: FlatBar) -> list[tuple[str, ...]]:
     """Return the holes of a plank in the order of ``HOLES_HEADER``, numbered from its start.
 
     The spacing is the difference of the printed stations, so that a tape along the plank agrees with the table.
@@ -99,7 +99,7 @@ def write_segment_tables(
     write_csv(splices_path, SPLICES_HEADER, splice_rows(segmentation))
 
 
-def check_row(plank: Plank, timber: Timber) -> tuple[str, ...]:
+def check_row(plank: FlatBar, timber: Timber) -> tuple[str, ...]:
     """Return the forming stresses of a plank in the order of ``CHECKS_HEADER``; utilisations by f_m and f_v."""
     stress = lamella_stress(plank, timber)
     return (

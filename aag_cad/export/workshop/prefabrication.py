@@ -21,7 +21,7 @@ from aag_cad.mechanics.siblings import (
     sprung_shape,
 )
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, Timber
+from aag_cad.parts.model import FlatBar, Gridshell, Hole, Shell, Timber
 from aag_cad.parts.twins import made_for_each
 
 PREFABRICATION_HEADER = (
@@ -61,7 +61,7 @@ def prefabrication_of(shell: Shell, pair: CoupledPair, timber: Timber) -> Prefab
     )
 
 
-def _paired_planks(shell: Shell) -> Iterator[tuple[CoupledPair, Plank, Plank]]:
+def _paired_planks(shell: Shell) -> Iterator[tuple[CoupledPair, FlatBar, FlatBar]]:
     """Yield every beam of a shell by mark: its couplings, its left and right plank."""
     for beam in sorted(shell.beams, key=lambda beam: beam.mark):
         left, right = (index_of(shell).planks[mark] for mark in beam.planks)
@@ -106,7 +106,7 @@ def prefabrication_row(made: Prefabrication) -> Row:
     )
 
 
-def _bolt_holes(plank: Plank) -> dict[str, list[Hole]]:
+def _bolt_holes(plank: FlatBar) -> dict[str, list[Hole]]:
     """Return the bolt holes of each joint of a plank, from the lower edge up."""
     found: dict[str, list[Hole]] = defaultdict(list)
     for hole in sorted(plank.blank.holes, key=lambda hole: hole.offset):
@@ -115,7 +115,7 @@ def _bolt_holes(plank: Plank) -> dict[str, list[Hole]]:
     return found
 
 
-def drilling_rows(pair: CoupledPair, left: Plank, right: Plank) -> list[Row]:
+def drilling_rows(pair: CoupledPair, left: FlatBar, right: FlatBar) -> list[Row]:
     """Return one line for every bolt of a beam, both planks side by side, in the order of ``DRILLING_HEADER``.
 
     The over-drilled stations stand in for the nominal ones if the beam is to spring to its curve by itself; the

@@ -17,7 +17,7 @@ from aag_cad.findings import Finding
 from aag_cad.language import printed
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import CouplingBlock, Gridshell, Hole, HoleUse, Plank, Screw, all_joints
+from aag_cad.parts.model import CouplingBlock, FlatBar, Gridshell, Hole, HoleUse, Screw, all_joints
 from aag_cad.units import Floats
 
 ROUNDING = 0.05
@@ -128,7 +128,7 @@ def _worst(missed: list[Finding]) -> list[Finding]:
     return sorted(missed, key=lambda item: (item.severity != "error", item.found - item.allowed))[:1]
 
 
-def _plank_borders(plank: Plank, diameters: Diameters) -> Iterator[Finding]:
+def _plank_borders(plank: FlatBar, diameters: Diameters) -> Iterator[Finding]:
     """Yield AAG201 and AAG202: the holes too near to an end and to an edge, one each for bolts and for screws.
 
     A slot counts from its end.
@@ -150,7 +150,7 @@ def _plank_borders(plank: Plank, diameters: Diameters) -> Iterator[Finding]:
         yield from _worst(edges)
 
 
-def _plank_spacing(plank: Plank, diameters: Diameters) -> Iterator[Finding]:
+def _plank_spacing(plank: FlatBar, diameters: Diameters) -> Iterator[Finding]:
     """Yield AAG203: the two holes too near to each other; two are far enough apart if along or across the grain.
 
     Of unlike fasteners the smaller distances are the least and the larger ones the most.

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
 from aag_cad.geometry.framed import curvatures_at
-from aag_cad.parts.model import Plank, Timber
+from aag_cad.parts.model import FlatBar, Timber
 from aag_cad.units import Floats
 
 _SPACING = 20.0
@@ -40,7 +40,7 @@ def unrolled_bow(curvature: Floats, stations: Floats) -> float:
     return float(np.abs(x * y[-1] - y * x[-1]).max() / chord)
 
 
-def lamella_stress(plank: Plank, timber: Timber) -> LamellaStress:
+def lamella_stress(plank: FlatBar, timber: Timber) -> LamellaStress:
     """Return the forming stresses of a plank of thickness t and width b.
 
     Bending sigma = E t kappa / 2 about the weak axis; torsion tau = G t theta'; helix (Wagner) stress at the edges

@@ -8,7 +8,8 @@ import numpy as np
 
 from aag_cad.design import Design
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Footing, Gridshell, Shell, shell_parts
+from aag_cad.parts.kinds import kind_of
+from aag_cad.parts.model import Gridshell, Shell, shell_parts
 from aag_cad.parts.quantities import mass
 from aag_cad.units import MM2_PER_M2, Floats
 
@@ -72,7 +73,8 @@ def footing_checks(design: Design, gridshell: Gridshell) -> Iterator[FootingChec
         feet = [joint.point for joint in shell.joints if joint.kind == "foot"]
         if not feet or not shell.footings:
             continue
-        own = sum(mass(p, gridshell.timber) for p in shell_parts(shell) if not isinstance(p, Footing)) * _GRAVITY
+        carried = (part for part in shell_parts(shell) if kind_of(part).material != "concrete")
+        own = sum(mass(part, gridshell.timber) for part in carried) * _GRAVITY
         block_mass = mass(shell.footings[0], gridshell.timber)
         block, count, area = block_mass * _GRAVITY, len(feet), plan_area(shell, design.closed)
         span = 2.0 * float(np.linalg.norm(np.array(feet)[:, :2], axis=1).mean())

@@ -5,7 +5,7 @@ them and the planks bend between. A flat plank is joined to the beam below or ab
 leaves it free to turn about the surface normal (one screw), as the paper's model does (section 4.1).
 """
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -27,7 +27,7 @@ from aag_cad.mechanics.frame.model import (
 )
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import Beam, Joint, Plank, Shell, Timber
+from aag_cad.parts.model import Beam, FlatBar, Joint, Member, Shell, Timber
 from aag_cad.parts.quantities import mass
 from aag_cad.units import Floats, Vector, vector
 
@@ -96,7 +96,7 @@ def _kept(places: list[tuple[float, str]], known: dict[str, Joint], length: floa
     return [*before, *stations, *([length] if length - stations[-1] > SHORTEST_END else [])]
 
 
-def _line(member: Beam | Plank, known: dict[str, Joint]) -> _Line | None:
+def _line(member: Member, known: dict[str, Joint]) -> _Line | None:
     """Return the line of a member, or None if fewer than two of its places bear a joint of the frame."""
     length = member.curve.length
     wanted = _ON_BEAMS if isinstance(member, Beam) else _ON_FLAT
@@ -198,7 +198,7 @@ def _masses(
 
 
 def _sides(
-    line: _Line, beams: dict[str, Beam], planks: dict[str, Plank]
+    line: _Line, beams: dict[str, Beam], planks: Mapping[str, FlatBar]
 ) -> tuple[list[tuple[str, float]], FrameSection]:
     """Return the planks of a line with their arms across it, mm, and the section of each."""
     if line.mark not in beams:
@@ -220,7 +220,7 @@ def shell_frame(
     """
     index = index_of(shell)
     flat = [plank for plank in shell.planks if not plank.upright and (fixed is None or plank.mark in fixed)]
-    candidates: list[Beam | Plank] = [*shell.beams, *flat]
+    candidates: list[Member] = [*shell.beams, *flat]
     found = {member.mark: _line(member, index.joints) for member in candidates}
     lines = {mark: line for mark, line in found.items() if line is not None}
     if not any(beam.mark in lines for beam in shell.beams):
