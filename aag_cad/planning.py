@@ -26,8 +26,9 @@ from assembly.booklet.plan_file import PlanFile, graph_pieces, gridshell_pieces,
 from assembly.checks.findings import disassembly_faults, graph_plan_faults, plan_faults
 from assembly.graph.files import graph_text, read_graph, read_graphml, shipped_graphs
 from assembly.graph.gridshell_graph import assembly_graph
+from assembly.plan.durations import step_minutes
 from assembly.plan.explain import explanation
-from assembly.plan.graph_plan import graph_durations, graph_plan
+from assembly.plan.graph_plan import graph_plan
 from assembly.plan.planned import NO_LIMITS, limits_of, planned_of
 from assembly.plan.schedule import Schedule, schedule_of
 
@@ -128,7 +129,7 @@ def planned_source(source: Source, language: Language = "en", edges_first: bool 
     graph = source.graph
     plan = graph_plan(graph, crew.people, crew.lift_limit)
     plan = replace(plan, findings=(*plan.findings, *graph_plan_faults(plan, graph, crew.people)))
-    schedule = schedule_of(plan, graph_durations(plan, graph, crew.minutes), crew.people, crew.hours_per_day)
+    schedule = schedule_of(plan, step_minutes(plan, graph, crew.minutes), crew.people, crew.hours_per_day)
     writers: dict[str, Callable[[Path], None]] = {
         "files": lambda folder: write_graph_plan(graph, plan, schedule, crew, folder, language)
     }

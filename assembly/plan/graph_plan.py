@@ -3,16 +3,14 @@
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import ceil, isfinite
+from math import isfinite
 
 import networkx as nx
 
-from aag_cad.design_making import Minutes
 from aag_cad.errors import MarkError
 from aag_cad.findings import Finding
 from aag_cad.language import Figure, Text, text
 from aag_cad.parts.marks import short_mark
-from aag_cad.units import MM_PER_M
 from assembly.base.errors import PlanError
 from assembly.base.lifters import lifters_of, lifting_findings
 from assembly.base.mark_ranges import named_marks
@@ -208,34 +206,3 @@ def graph_plan(graph: "nx.Graph[str]", people: int, lift_limit: float) -> Plan:
     lifted = {mark: weights[mark] for mark in alone}
     findings = (*woven.findings, *_waiting(waiting), *lifting_findings(lifted, lifters))
     return Plan(str(whole.name), tuple(steps_from(works, weights, lifters)), findings)
-
-
-# Keys of ``Minutes`` by the words for kinds; what the table does not know takes the time of a bolt.
-_MINUTES = {
-    "stud": "stud", "coupling block": "block", "bolt": "bolt", "screw": "screw", "strap": "strap", "shoe": "shoe",
-    "threaded rod": "rod", "concrete block": "footing", "mullion": "mullion", "strip": "strip",
-    "clamping bar": "clamp", "blade": "blade",
-}  # fmt: skip
-
-
-def graph_durations(plan: Plan, graph: "nx.MultiGraph[str]", minutes: Minutes) -> dict[str, int]:
-    """Return the minutes that each step of a graph's plan takes its people, by its id: whole ones, at least 1.
-
-    The times are those of ``[crew.minutes]``. A beam counts as made where it is laid; what is slid in is carried and
-    pushed, twice its length. A part of a kind without a time of its own takes that of a bolt.
-    """
-    times: dict[str, float] = minutes.model_dump()
-    units = units_of(graph)
-    unit_of = {part: unit for unit in units.values() for part in unit.parts}
-    found = {}
-    for step in plan.steps:
-        laid = dict.fromkeys(unit_of[mark].mark for mark in step.marks if mark in unit_of)
-        metres = sum(units[unit].length for unit in laid) / MM_PER_M
-        work = metres * minutes.carry * (2.0 if step.phase == "slide" else 1.0)
-        for unit in laid:
-            beam = unit not in graph
-            work += minutes.beam + minutes.plank * len(units[unit].parts) if beam else minutes.geodesic
-        for mark in (mark for mark in step.marks if mark not in unit_of):
-            work += times[_MINUTES.get(graph.nodes[mark]["kind"], "bolt")]
-        found[step.id] = max(1, ceil((step.crew * minutes.setup + work) / step.crew - 1.0 / 60.0))
-    return found

@@ -17,7 +17,8 @@ from assembly.booklet.shared_pictures import shared_pictures
 from assembly.booklet.step_words import step_title
 from assembly.graph.files import read_graph
 from assembly.graph.interlacing import interlacing
-from assembly.plan.graph_plan import graph_durations, graph_plan
+from assembly.plan.durations import step_minutes
+from assembly.plan.graph_plan import graph_plan
 from assembly.plan.planned import Planned
 from assembly.plan.schedule import schedule_of
 
@@ -185,7 +186,7 @@ def test_a_picture_that_is_no_svg_is_refused() -> None:
 def test_a_plain_graph_has_a_page_too(name: str, design: Design) -> None:
     graph = read_graph(template("graphs", f"{name}.json").read_text("utf-8"))
     plan = graph_plan(graph, 4, 25.0)
-    schedule = schedule_of(plan, graph_durations(plan, graph, design.crew.minutes), 4, 8.0)
+    schedule = schedule_of(plan, step_minutes(plan, graph, design.crew.minutes), 4, 8.0)
     page = graph_html(plan, schedule, graph)
     reader = read(page)
     assert_sound(reader)

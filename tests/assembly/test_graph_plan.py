@@ -1,5 +1,6 @@
 """The plan of any graph of parts: each part once, nothing under what lies unless it is slid in, and no spare hands."""
 
+import math
 import os
 import subprocess
 import sys
@@ -24,7 +25,8 @@ from assembly.checks.graph_plan import check_graph_plan
 from assembly.graph.files import graph_text, read_graph
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import interlacing
-from assembly.plan.graph_plan import JOINTS_A_STEP, LAID_A_STEP, graph_durations, graph_plan
+from assembly.plan.durations import step_minutes
+from assembly.plan.graph_plan import JOINTS_A_STEP, LAID_A_STEP, graph_plan
 from assembly.plan.schedule import people_curve, schedule_of
 
 MINUTES = Minutes.model_validate({})
@@ -89,7 +91,7 @@ def test_every_weave_is_planned_so_that_each_part_reaches_its_place(
     assert len(placed) == len(set(placed))
     assert set(placed) | told == set(graph)
     assert not set(placed) & told
-    minutes = graph_durations(plan, graph, MINUTES)
+    minutes = step_minutes(plan, graph, MINUTES)
     schedule = schedule_of(plan, minutes, people)
     assert all(count <= people for _, count in people_curve(schedule))
     assert graph_plan(graph, people, lift_limit) == plan
@@ -205,7 +207,7 @@ def test_the_vault_as_a_plain_graph_can_be_put_together(gridshell: Gridshell, va
     assert sum(len(step.marks) for step in vault_plan.steps) == len(graph)
     beams = [beam for step in vault_plan.steps for beam in step.assemblies]
     assert sorted(beams) == sorted(beam.mark for shell in gridshell.shells for beam in shell.beams)
-    minutes = graph_durations(vault_plan, graph, MINUTES)
+    minutes = step_minutes(vault_plan, graph, MINUTES)
     assert all(minutes[step.id] >= 1 for step in vault_plan.steps)
     schedule = schedule_of(vault_plan, minutes, 4)
     assert max(count for _, count in people_curve(schedule)) == 4
@@ -227,7 +229,16 @@ def test_a_lay_step_lasts_as_long_as_what_is_done_in_it() -> None:
     plan = graph_plan(graph, 2, 25.0)
     first = plan.steps[0]
     assert first.crew == 2
-    assert graph_durations(plan, graph, MINUTES)[first.id] == round(10 + (6 * 4.8 * 0.5 + 6 * 5) / 2 + 0.49)
+    assert step_minutes(plan, graph, MINUTES)[first.id] == round(10 + (6 * 4.8 * 0.5 + 6 * 5) / 2 + 0.49)
+
+
+def test_to_slide_a_plank_in_takes_as_long_in_any_weave_as_in_a_gridshell() -> None:
+    """Two people, 10 min each to get ready; 0.5 min/m to its place, 5 min for a flat plank, 15 min to push it in."""
+    graph = read_graph(graph_text("kagome"))
+    plan = graph_plan(graph, 4, 25.0)
+    step = next(step for step in plan.steps if step.marks == ("P1-03",))
+    assert (step.phase, step.crew) == ("slide", 2)
+    assert step_minutes(plan, graph, MINUTES)[step.id] == math.ceil(10 + (4.684752 * 0.5 + 5 + 15) / 2)
 
 
 def test_the_plan_does_not_depend_on_the_hash_of_marks() -> None:
