@@ -1,10 +1,17 @@
-"""Steps for tests of what reads plans: only what a test is about has to be said."""
+"""Steps and planned work for tests of what reads plans: only what a test is about has to be said."""
 
+from collections.abc import Sequence
 from typing import Any
 
+from aag_cad.design_making import Crew
+from aag_cad.export.ifc.schedule import PlannedWork
 from aag_cad.language import Sentence, Text, text
+from aag_cad.parts.model import Gridshell
 from assembly.base.phases import Phase, is_down
-from assembly.base.steps import Step
+from assembly.base.steps import Plan, Step
+from assembly.plan.assembly_plan import plan_of
+from assembly.plan.durations import step_minutes
+from assembly.plan.schedule import schedule_of
 from assembly.plan.step_cards import card, spanners
 
 
@@ -22,3 +29,20 @@ def a_step(number: int, title: Sentence = "", phase: Phase = "studs", **said: An
         "predecessors": (), "card": a_card(phase),
     }  # fmt: skip
     return Step(number=number, title=title, phase=phase, **plain | said)
+
+
+def a_crew(people: int, **said: Any) -> Crew:
+    """Return a crew who lift 25 kg each."""
+    return Crew.model_validate({"people": people, "lift_limit": 25.0} | said)
+
+
+def planned_work(gridshell: Gridshell, steps: Sequence[Step], crew: Crew) -> PlannedWork:
+    """Return the steps of a gridshell with their schedule for a crew."""
+    plan = Plan(gridshell.name, tuple(steps))
+    minutes = step_minutes(plan, gridshell, crew.minutes)
+    return PlannedWork(plan, schedule_of(plan, minutes, crew.people, crew.hours_per_day), crew)
+
+
+def work_of(gridshell: Gridshell, people: int) -> PlannedWork:
+    """Return the whole plan of a gridshell with its schedule for a crew."""
+    return planned_work(gridshell, plan_of(gridshell, people, 25.0).steps, a_crew(people))

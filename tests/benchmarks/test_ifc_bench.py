@@ -11,6 +11,7 @@ from pathlib import Path
 import ifcopenshell
 import ifcopenshell.validate
 import pytest
+from making import work_of
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from aag_cad.export.cad.gltf import write_glb
@@ -20,7 +21,6 @@ from aag_cad.parts.model import Gridshell, Shell, all_parts
 from aag_cad.parts.quantities import gross_volume
 from aag_cad.parts.store import gridshell_json, read_gridshell
 from aag_cad.units import MM3_PER_M3
-from assembly.plan.assembly_plan import plan_of
 
 # Marks, volumes in m3 of all bodies; circles drawn with 180 chords, or fasteners are 5 % off.
 _READER = """
@@ -61,7 +61,7 @@ def of_shells(gridshell: Gridshell, count: int) -> Gridshell:
 def test_write_three_shells_with_every_bolt_as_ifc(
     benchmark: BenchmarkFixture, gridshell: Gridshell, tmp_path: Path
 ) -> None:
-    benchmark(write_ifc, gridshell, tmp_path / "vault.ifc", plan_of(gridshell, 6, 25.0).steps)
+    benchmark(write_ifc, gridshell, tmp_path / "vault.ifc", work_of(gridshell, 6))
     assert 1e6 < (tmp_path / "vault.ifc").stat().st_size < 8e6
 
 
@@ -90,7 +90,7 @@ def test_ten_times_the_shells_take_at_most_twelve_times_as_long(gridshell: Grids
 def test_the_whole_vault_keeps_all_rules_of_every_schema(
     gridshell: Gridshell, tmp_path: Path, schema: IfcSchema
 ) -> None:
-    write_ifc(gridshell, tmp_path / "vault.ifc", plan_of(gridshell, 6, 25.0).steps, IfcOptions(schema=schema))
+    write_ifc(gridshell, tmp_path / "vault.ifc", work_of(gridshell, 6), IfcOptions(schema=schema))
     logger = ifcopenshell.validate.json_logger()
     ifcopenshell.validate.validate(ifcopenshell.open(str(tmp_path / "vault.ifc")), logger, express_rules=True)
     assert logger.statements == []

@@ -14,7 +14,8 @@ import ifcopenshell.util.pset
 import ifcopenshell.validate
 import numpy as np
 import pytest
-from test_ifc_sample import sampled, sampled_steps
+from making import work_of
+from test_ifc_sample import sampled, sampled_work
 
 from aag_cad.design import load_design
 from aag_cad.export.ifc.model import ifc_model, write_ifc
@@ -22,7 +23,6 @@ from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcOptions, IfcSchema
 from aag_cad.export.ifc.schemas import attributes_of
 from aag_cad.parts.model import Gridshell
 from aag_cad.pipeline import gridshell_of
-from assembly.plan.assembly_plan import plan_of
 
 File: TypeAlias = ifcopenshell.file
 Edge: TypeAlias = tuple[int, int]
@@ -49,9 +49,9 @@ def sample(gridshell: Gridshell) -> Gridshell:
 @pytest.fixture(scope="module")
 def written(gridshell: Gridshell, sample: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> dict[IfcSchema, Path]:
     """Give the path of a file with its plan in every schema."""
-    folder, steps = tmp_path_factory.mktemp("ifc"), sampled_steps(gridshell, sample)
+    folder, work = tmp_path_factory.mktemp("ifc"), sampled_work(gridshell, sample)
     for schema in IFC_SCHEMAS:
-        write_ifc(sample, folder / f"{schema}.ifc", steps, IfcOptions(schema=schema))
+        write_ifc(sample, folder / f"{schema}.ifc", work, IfcOptions(schema=schema))
     return {schema: folder / f"{schema}.ifc" for schema in IFC_SCHEMAS}
 
 
@@ -412,7 +412,7 @@ def test_each_check_finds_its_fault_in_a_damaged_file(
 
 @pytest.mark.slow
 def test_the_whole_vault_with_its_plan_is_valid_and_no_larger_than_8_mb(gridshell: Gridshell, tmp_path: Path) -> None:
-    write_ifc(gridshell, tmp_path / "vault.ifc", plan_of(gridshell, 6, 25.0).steps)
+    write_ifc(gridshell, tmp_path / "vault.ifc", work_of(gridshell, 6))
     assert (tmp_path / "vault.ifc").stat().st_size < 8e6
     file = ifcopenshell.open(str(tmp_path / "vault.ifc"))
     assert rule_faults(file) == []

@@ -6,7 +6,7 @@ from pathlib import Path
 import ifcopenshell
 import pytest
 from ifctester import ids
-from test_ifc_sample import sampled, sampled_steps
+from test_ifc_sample import sampled, sampled_work
 
 from aag_cad.export.ifc.model import write_ifc
 from aag_cad.export.ifc.options import IFC_SCHEMAS, IfcOptions, IfcSchema
@@ -17,9 +17,9 @@ from aag_cad.resources import template
 @pytest.fixture(scope="module")
 def paths(gridshell: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> dict[IfcSchema, Path]:
     folder, sample = tmp_path_factory.mktemp("ids"), sampled(gridshell, of_a_kind=1)
+    work = sampled_work(gridshell, sample)
     for schema in IFC_SCHEMAS:
-        steps = sampled_steps(gridshell, sample)
-        write_ifc(sample, folder / f"{schema}.ifc", steps, IfcOptions(schema=schema))
+        write_ifc(sample, folder / f"{schema}.ifc", work, IfcOptions(schema=schema))
     return {schema: folder / f"{schema}.ifc" for schema in IFC_SCHEMAS}
 
 

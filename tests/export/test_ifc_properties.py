@@ -8,19 +8,19 @@ from typing import Any, TypeAlias
 import ifcopenshell
 import ifcopenshell.util.element
 import pytest
-from test_ifc_sample import sampled, sampled_steps
+from test_ifc_sample import sampled, sampled_work
 
-from aag_cad.export.ifc.assembly_sets import segment_of
 from aag_cad.export.ifc.model import ifc_model
 from aag_cad.export.ifc.options import IfcOptions
 from aag_cad.export.ifc.properties import hole_text
+from aag_cad.export.ifc.schedule import PlannedWork
 from aag_cad.parts.index import index_of
+from aag_cad.parts.marks import shell_of
 from aag_cad.parts.model import Footing, Gridshell, Hole, Part, Plank, Rod, Strip, all_parts
 from aag_cad.parts.quantities import largest_twist, mass, material_name, smallest_radius
 from aag_cad.parts.shapes.sheet import flat_pattern
 from aag_cad.shop.groups import drill_groups
 from aag_cad.units import deg_per_m
-from assembly.base.steps import Step
 
 File: TypeAlias = ifcopenshell.file
 Sets: TypeAlias = Mapping[str, Mapping[str, Any]]
@@ -32,13 +32,13 @@ def sample(gridshell: Gridshell) -> Gridshell:
 
 
 @pytest.fixture(scope="module")
-def steps(gridshell: Gridshell, sample: Gridshell) -> Sequence[Step]:
-    return sampled_steps(gridshell, sample)
+def work(gridshell: Gridshell, sample: Gridshell) -> PlannedWork:
+    return sampled_work(gridshell, sample)
 
 
 @pytest.fixture(scope="module")
-def ifc(sample: Gridshell, steps: Sequence[Step]) -> File:
-    return ifc_model(sample, steps).file
+def ifc(sample: Gridshell, work: PlannedWork) -> File:
+    return ifc_model(sample, work).file
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +58,7 @@ def of_kind(sample: Gridshell, kind: type[Part]) -> Part:
 def test_a_plank_says_how_it_is_made(sample: Gridshell, sets: Mapping[str, Sets], planks: Sequence[Plank]) -> None:
     for plank in planks:
         made, quantities = sets[plank.mark]["AAG_Fabrication"], sets[plank.mark]["Qto_MemberBaseQuantities"]
-        assert plank.mark == f"{segment_of(plank.mark)}-{made['Product'].removeprefix('Plank ')}"
+        assert plank.mark == f"{shell_of(plank.mark)}-{made['Product'].removeprefix('Plank ')}"
         assert (made["Mark"], made["Family"], made["Layer"]) == (plank.mark, plank.family, plank.layer)
         assert made["BlankLength"] == pytest.approx(plank.blank.length, abs=1e-3)
         assert (made["BlankWidth"], made["BlankThickness"]) == (100.0, 12.0)
@@ -100,9 +100,9 @@ def test_planks_name_the_template_that_they_are_drilled_by(
 
 
 def test_every_part_tells_its_segment_and_its_step(
-    sample: Gridshell, sets: Mapping[str, Sets], steps: Sequence[Step]
+    sample: Gridshell, sets: Mapping[str, Sets], work: PlannedWork
 ) -> None:
-    step_of = {mark: step for step in steps for mark in step.marks}
+    step_of = {mark: step for step in work.plan.steps for mark in step.marks}
     for part in all_parts(sample):
         row, step = sets[part.mark]["AAG_Assembly"], step_of[part.mark]
         assert (row["Step"], row["StepNumber"], row["Phase"]) == (step.id, step.number, step.phase)

@@ -8,13 +8,13 @@ from typing import Any
 import ifcopenshell
 import ifcopenshell.util.element
 import pytest
+from making import work_of
 
 from aag_cad.export.ifc.model import ifc_model
+from aag_cad.export.ifc.schedule import PlannedWork
 from aag_cad.export.office.tables import hole_rows, part_row
 from aag_cad.parts.model import Gridshell, Plank, all_parts
 from aag_cad.parts.quantities import mass, sizes
-from assembly.base.steps import Step
-from assembly.plan.assembly_plan import plan_of
 
 HOLE = re.compile(
     r"(?P<number>\d+): x (?P<x>[\d.]+), y (?P<y>[+-][\d.]+), d (?P<d>[\d.]+)( slot [\d.]+)? (?P<use>\w+) (?P<joint>\S+)"
@@ -24,13 +24,13 @@ LENGTH, MASS, RADIUS, TWIST = 6, 10, 11, 12
 
 
 @pytest.fixture(scope="module")
-def steps(gridshell: Gridshell) -> tuple[Step, ...]:
-    return plan_of(gridshell, 6, 25.0).steps
+def work(gridshell: Gridshell) -> PlannedWork:
+    return work_of(gridshell, 6)
 
 
 @pytest.fixture(scope="module")
-def file(gridshell: Gridshell, steps: tuple[Step, ...]) -> ifcopenshell.file:
-    return ifcopenshell.file.from_string(ifc_model(gridshell, steps).file.to_string())
+def file(gridshell: Gridshell, work: PlannedWork) -> ifcopenshell.file:
+    return ifcopenshell.file.from_string(ifc_model(gridshell, work).file.to_string())
 
 
 @pytest.fixture(scope="module")
@@ -105,10 +105,10 @@ def test_the_hole_list_can_be_written_from_the_file(
 
 
 def test_the_plan_can_be_read_from_the_file(
-    elements: Mapping[str, ifcopenshell.entity_instance], steps: tuple[Step, ...]
+    elements: Mapping[str, ifcopenshell.entity_instance], work: PlannedWork
 ) -> None:
     read: dict[tuple[int, str], set[str]] = {}
     for mark, element in elements.items():
         row = ifcopenshell.util.element.get_pset(element, "AAG_Assembly")
         read.setdefault((row["StepNumber"], row["Step"]), set()).add(mark)
-    assert read == {(step.number, step.id): set(step.marks) for step in steps if step.marks}
+    assert read == {(step.number, step.id): set(step.marks) for step in work.plan.steps if step.marks}

@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from aag_cad.design_making import Crew
+from making import a_crew, planned_work
+
 from aag_cad.export.ifc.schedule import PlannedWork
 from aag_cad.parts.kinds import KINDS
 from aag_cad.parts.model import Gridshell, Joint, Part, Shell, all_parts
-from assembly.base.steps import Plan, Step
+from assembly.base.steps import Step
 from assembly.plan.assembly_plan import plan_of
-from assembly.plan.durations import step_minutes
-from assembly.plan.schedule import schedule_of
 
 OF_A_KIND = 2
 
@@ -55,13 +54,6 @@ def sampled(gridshell: Gridshell, of_a_kind: int = OF_A_KIND) -> Gridshell:
     )
 
 
-def planned_work(sample: Gridshell, steps: Sequence[Step], crew: Crew) -> PlannedWork:
-    """Return the steps of a sample with their schedule for a crew."""
-    plan = Plan(sample.name, tuple(steps))
-    minutes = step_minutes(plan, sample, crew.minutes)
-    return PlannedWork(plan, schedule_of(plan, minutes, crew.people, crew.hours_per_day), crew)
-
-
 def sampled_steps(gridshell: Gridshell, sample: Gridshell) -> tuple[Step, ...]:
     """Return the plan of a gridshell as far as it handles parts of its sample."""
     kept = {part.mark for part in all_parts(sample)} | {shell.mark for shell in sample.shells}
@@ -74,6 +66,11 @@ def sampled_steps(gridshell: Gridshell, sample: Gridshell) -> tuple[Step, ...]:
         )
         for step in plan_of(gridshell, 4, 25.0).steps
     )
+
+
+def sampled_work(gridshell: Gridshell, sample: Gridshell) -> PlannedWork:
+    """Return what a file says of the plan of a gridshell as far as it handles parts of its sample, by four people."""
+    return planned_work(sample, sampled_steps(gridshell, sample), a_crew(4))
 
 
 def test_the_sample_of_the_vault_has_every_kind_of_part(gridshell: Gridshell) -> None:

@@ -8,8 +8,8 @@ import ifcopenshell.api.sequence
 import ifcopenshell.util.date
 import networkx as nx
 import pytest
-from making import a_step
-from test_ifc_sample import planned_work, sampled, sampled_steps
+from making import a_step, planned_work
+from test_ifc_sample import sampled, sampled_steps
 
 from aag_cad.design import Design
 from aag_cad.export.ifc.model import ifc_model
