@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from aag_cad.files import write_bytes
-from aag_cad.parts.index import index_of
+from aag_cad.parts.index import Index, index_of
 from aag_cad.parts.marks import shell_of
 from aag_cad.parts.model import Beam, Gridshell, Plank, Shell
-from aag_cad.shop.groups import DrillGroup, drawn_face, templates_of
+from aag_cad.shop.groups import drawn_face, templates_of
 from aag_cad.typesetting import printout_pdf
 from aag_cad.units import Floats
 from assembly.booklet.qr import qr_svg
@@ -57,71 +57,56 @@ def _key(shell: Shell, outline: Outline) -> dict[str, Any]:
     }
 
 
-def _blank(plank: Plank) -> list[list[Any]]:
-    """Return the picture of a blank: dots at fractions of the length and of the width, from the start and the top."""
-    length, width = plank.blank.length, plank.blank.section.width
-    return [[hole.station / length, 0.5 - hole.offset / width, hole.use == "bolt"] for hole in plank.blank.holes]
-
-
-def _joints(gridshell: Gridshell, beam: Beam) -> list[list[Any]]:
-    """Return the picture of a beam: a dot for each joint, filled for those on studs."""
-    studs = index_of(gridshell).studs
-    return [[place.station / beam.curve.length, 0.5, place.joint in studs] for place in beam.joints]
-
-
-def _plank_label(gridshell: Gridshell, plank: Plank, group: DrillGroup, outline: Outline) -> dict[str, Any]:
-    section = plank.blank.section
-    (member,) = (member for member in group.members if member.mark == plank.mark)
+def _of_plank(plank: Plank, template: str) -> dict[str, Any]:
+    """Return what the label of a plank tells; its dots at fractions of length and width are holes, bolts filled."""
+    blank, section = plank.blank, plank.blank.section
     return {
-        "mark": plank.mark,
-        "shell": shell_of(plank.mark),
-        "line": _few(outline.lines[plank.mark]).tolist(),
-        "picture": _blank(plank),
+        "picture": [
+            (hole.station / blank.length, 0.5 - hole.offset / section.width, hole.use == "bolt") for hole in blank.holes
+        ],
         "facts": [
-            f"{plank.blank.length:.1f} x {section.width:g} x {section.thickness:g} mm",
+            f"{blank.length:.1f} x {section.width:g} x {section.thickness:g} mm",
             f"{plank.family} · {_LAYERS[plank.layer]} layer",
-            f"template {group.mark} · {member.laid}",
+            template,
         ],
         "note": f"stick at START on {drawn_face(plank)}",
-        "qr": qr_svg(qr_content(gridshell, plank.mark)),
     }
 
 
-def _beam_label(gridshell: Gridshell, beam: Beam, outline: Outline) -> dict[str, Any]:
-    left, right = (index_of(gridshell).planks[mark].blank.length for mark in beam.planks)
+def _of_beam(beam: Beam, index: Index) -> dict[str, Any]:
+    """Return what the label of a coupled beam tells; its dots are its joints, those on studs filled."""
+    left, right = (index.planks[mark].blank.length for mark in beam.planks)
     return {
-        "mark": beam.mark,
-        "shell": shell_of(beam.mark),
-        "line": _few(outline.lines[beam.mark]).tolist(),
-        "picture": _joints(gridshell, beam),
+        "picture": [(at.station / beam.curve.length, 0.5, at.joint in index.studs) for at in beam.joints],
         "facts": [
             f"coupled beam, {len(beam.joints)} joints",
             f"L {left:.1f} · R {right:.1f} mm",
             f"{beam.family} · {_LAYERS[beam.layer]} layer",
         ],
         "note": "stick at START, outer edge of plank L; dots: studs, rings: blocks",
-        "qr": qr_svg(qr_content(gridshell, beam.mark)),
     }
-
-
-def _mark(label: dict[str, Any]) -> str:
-    return str(label["mark"])
 
 
 def labels_data(gridshell: Gridshell) -> dict[str, Any]:
     """Return the data that the labels are made from: first all planks, then all beams, each sorted by mark."""
-    outlines = {shell.mark: _key_outline(shell) for shell in gridshell.shells}
-    group_of = {member.mark: group for group in templates_of(gridshell) for member in group.members}
-    planks, beams = [], []
-    for shell in gridshell.shells:
-        outline = outlines[shell.mark]
-        planks += [_plank_label(gridshell, plank, group_of[plank.mark], outline) for plank in shell.planks]
-        beams += [_beam_label(gridshell, beam, outline) for beam in shell.beams]
-    return {
-        "title": gridshell.title,
-        "keys": {shell.mark: _key(shell, outlines[shell.mark]) for shell in gridshell.shells},
-        "labels": [*sorted(planks, key=_mark), *sorted(beams, key=_mark)],
+    index, outlines = index_of(gridshell), {shell.mark: _key_outline(shell) for shell in gridshell.shells}
+    templates = {
+        m.mark: f"template {group.mark} · {m.laid}" for group in templates_of(gridshell) for m in group.members
     }
+    told = {mark: _of_plank(plank, templates[mark]) for mark, plank in sorted(index.planks.items())}
+    told |= {mark: _of_beam(beam, index) for mark, beam in sorted(index.beams.items())}
+    labels = [
+        label
+        | {
+            "mark": mark,
+            "shell": shell_of(mark),
+            "line": _few(outlines[shell_of(mark)].lines[mark]).tolist(),
+            "qr": qr_svg(qr_content(gridshell, mark)),
+        }
+        for mark, label in told.items()
+    ]
+    keys = {shell.mark: _key(shell, outlines[shell.mark]) for shell in gridshell.shells}
+    return {"title": gridshell.title, "keys": keys, "labels": labels}
 
 
 def labels_pdf(gridshell: Gridshell) -> bytes:

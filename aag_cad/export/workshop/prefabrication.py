@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from aag_cad.files import write_text
+from aag_cad.files import write_csv
 from aag_cad.mechanics.sag import StandLayout, flat_pair, stand_layout
 from aag_cad.mechanics.siblings import (
     CoupledPair,
@@ -146,8 +146,7 @@ def _write(
 ) -> None:
     """Write what a shell gives as CSV, the shells by mark."""
     made = made_for_each(gridshell, lambda shell: tuple(rows_of(shell)))
-    rows = (row for mark in sorted(made) for row in made[mark])
-    write_text(path, "".join(",".join(row) + "\n" for row in (header, *rows)))
+    write_csv(path, header, (row for mark in sorted(made) for row in made[mark]))
 
 
 def write_prefabrication(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
