@@ -19,7 +19,8 @@ from aag_cad.audit import (
 )
 from aag_cad.design import Design
 from aag_cad.findings import Finding
-from aag_cad.parts.model import Blank, Gridshell, Plank
+from aag_cad.parts.forms import Blank
+from aag_cad.parts.model import Gridshell, Plank
 from aag_cad.shop.purchases import purchases_of
 
 

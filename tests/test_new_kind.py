@@ -21,11 +21,12 @@ from aag_cad.language import words_table
 from aag_cad.network.model import CurveNetwork
 from aag_cad.parts import build as building
 from aag_cad.parts.clash import clashes
+from aag_cad.parts.forms import FoldedPlate, Frame, PlateHole
 from aag_cad.parts.kinds import KINDS, Bought, IfcKind, Kind
 from aag_cad.parts.marks import Mark, parse_mark
-from aag_cad.parts.model import Frame, Gridshell, Joint, Shell, all_parts
+from aag_cad.parts.model import Gridshell, Joint, Shell, all_parts
 from aag_cad.parts.quantities import mass
-from aag_cad.parts.shapes.folded_plate import FOLDED_PLATE, FoldedPlate, PlateHole
+from aag_cad.parts.shapes.folded_plate import FOLDED_PLATE
 from aag_cad.parts.store import gridshell_json, read_gridshell
 from aag_cad.pipeline import Build, build
 

@@ -15,11 +15,11 @@ from aag_cad.network.ridge import ridge_distance
 from aag_cad.parts.clearance import Obstacle, is_free, placed_points
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt
 from aag_cad.parts.forming import formed_points
+from aag_cad.parts.forms import FoldedPlate, Frame, PlateHole
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import Mark, parse_mark, part_mark, ridge_name, shell_of
 from aag_cad.parts.members import Drilling, curve_mark
-from aag_cad.parts.model import Blade, Bolt, Frame, Gridshell, Joint
-from aag_cad.parts.shapes.folded_plate import FoldedPlate, PlateHole
+from aag_cad.parts.model import Blade, Bolt, Gridshell, Joint
 from aag_cad.units import Floats, vector
 
 _REACH = 30.0

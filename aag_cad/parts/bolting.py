@@ -7,9 +7,10 @@ from typing import TypeAlias
 import numpy as np
 
 from aag_cad.parts.forming import formed_points
+from aag_cad.parts.forms import UNMOVED, Frame
 from aag_cad.parts.marks import joint_of
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import UNMOVED, Blade, Bolt, Frame, Gridshell, Plank, Shell, Shoe, Strap
+from aag_cad.parts.model import Blade, Bolt, Gridshell, Plank, Shell, Shoe, Strap
 from aag_cad.parts.shapes.folded_plate import hole_axes
 from aag_cad.units import Floats
 

@@ -17,6 +17,7 @@ from aag_cad.parts.blades import BladeJoint, blade_joints, own_sides
 from aag_cad.parts.clearance import Obstacle, near_parts, obstacles
 from aag_cad.parts.facade import covered, placed_facade
 from aag_cad.parts.feet import foot_joints
+from aag_cad.parts.forms import UNMOVED, Frame
 from aag_cad.parts.joints import BuiltJoint, block_joint, node_joint
 from aag_cad.parts.kinds import KINDS, kind_of
 from aag_cad.parts.marks import Mark, turned_mark
@@ -29,20 +30,7 @@ from aag_cad.parts.members import (
     undrilled_members,
     with_joints,
 )
-from aag_cad.parts.model import (
-    SCHEMA_VERSION,
-    UNMOVED,
-    Beam,
-    Blade,
-    Bolt,
-    Frame,
-    Gridshell,
-    Joint,
-    Part,
-    Plank,
-    Shell,
-    Timber,
-)
+from aag_cad.parts.model import SCHEMA_VERSION, Beam, Blade, Bolt, Gridshell, Joint, Part, Plank, Shell, Timber
 from aag_cad.parts.straps import strap_joint
 from aag_cad.parts.twins import renamed
 from aag_cad.units import Floats, vector

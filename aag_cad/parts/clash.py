@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from aag_cad.parts.forms import UNMOVED, Frame
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import shaped
 from aag_cad.parts.mesh import depths_in, frame_matrix, surface_points
-from aag_cad.parts.model import UNMOVED, Frame, Gridshell, Part, all_joints, ridge_parts, shell_parts
+from aag_cad.parts.model import Gridshell, Part, all_joints, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame
 from aag_cad.units import Floats, Vector, vector
 

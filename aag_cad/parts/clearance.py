@@ -6,8 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from aag_cad.parts.forms import Frame
 from aag_cad.parts.mesh import depths_in, frame_matrix, placed, shell_mesh, surface_points
-from aag_cad.parts.model import Frame, Part
+from aag_cad.parts.model import Part
 from aag_cad.parts.products import part_frame
 from aag_cad.units import Floats, Vector
 

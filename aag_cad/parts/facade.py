@@ -20,23 +20,11 @@ from aag_cad.network.ridge import ridge_distance
 from aag_cad.parts.clearance import Obstacle, is_free, obstacles, placed_points
 from aag_cad.parts.fasteners import axis_frame, wood_screw
 from aag_cad.parts.forming import axis_piercings
+from aag_cad.parts.forms import Blank, CrossSection, Frame, Hole
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import Mark, joint_of, parse_mark, part_mark
 from aag_cad.parts.members import Drilling, curve_mark, drilled, grouped, with_joints
-from aag_cad.parts.model import (
-    Blank,
-    ClampingBar,
-    CouplingBlock,
-    CrossSection,
-    Frame,
-    Hole,
-    Joint,
-    Mullion,
-    Plank,
-    Screw,
-    Shell,
-    Strip,
-)
+from aag_cad.parts.model import ClampingBar, CouplingBlock, Joint, Mullion, Plank, Screw, Shell, Strip
 from aag_cad.parts.shapes.sheet import Limit, Sheet, along_cut, depth_inside, sheet_of
 from aag_cad.units import MM_PER_M, Floats, vector
 

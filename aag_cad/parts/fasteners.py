@@ -8,7 +8,8 @@ import numpy as np
 
 from aag_cad.errors import DesignError
 from aag_cad.geometry.surface import unit
-from aag_cad.parts.model import Bolt, Frame, Rod, Screw
+from aag_cad.parts.forms import Frame
+from aag_cad.parts.model import Bolt, Rod, Screw
 from aag_cad.resources import template
 from aag_cad.units import Floats, vector
 

@@ -12,11 +12,11 @@ from aag_cad.geometry.framed import frames_at
 from aag_cad.geometry.surface import unit
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork, NetworkCurve
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt, threaded_rod
+from aag_cad.parts.forms import FoldedPlate, Frame, PlateHole
 from aag_cad.parts.joints import BuiltJoint
 from aag_cad.parts.marks import Mark, part_mark
 from aag_cad.parts.members import Drilling, curve_mark
-from aag_cad.parts.model import Bolt, Footing, Frame, Joint, Rod, Shoe
-from aag_cad.parts.shapes.folded_plate import FoldedPlate, PlateHole
+from aag_cad.parts.model import Bolt, Footing, Joint, Rod, Shoe
 from aag_cad.units import Floats, vector
 
 _ROD_SPARE = 6.0

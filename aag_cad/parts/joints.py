@@ -8,9 +8,10 @@ from aag_cad.design import Design
 from aag_cad.geometry.surface import unit
 from aag_cad.network.model import Crossing
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt, wood_screw
+from aag_cad.parts.forms import CrossHole, Frame, Hole
 from aag_cad.parts.marks import Mark, part_mark
 from aag_cad.parts.members import Drilling, beam_axes, curve_mark
-from aag_cad.parts.model import Beam, Bolt, CouplingBlock, CrossHole, Frame, Hole, Joint, Part, Stud
+from aag_cad.parts.model import Beam, Bolt, CouplingBlock, Joint, Part, Stud
 from aag_cad.units import Floats, vector
 
 

@@ -11,8 +11,9 @@ from aag_cad.families import FAMILIES, Family
 from aag_cad.geometry.framed import FramedCurve, frames_at, nearest_station, offset_curve
 from aag_cad.network.model import CurveId, CurveNetwork
 from aag_cad.parts.forming import axis_piercings
+from aag_cad.parts.forms import Blank, CrossSection, Hole, HoleUse
 from aag_cad.parts.marks import Mark, part_mark
-from aag_cad.parts.model import Beam, Blank, CrossSection, Hole, HoleUse, JointStation, Member, Plank
+from aag_cad.parts.model import Beam, JointStation, Member, Plank
 from aag_cad.units import Floats, Vector
 
 

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from aag_cad.parts.forms import Frame
 from aag_cad.parts.kinds import shaped
-from aag_cad.parts.model import Frame, Part
+from aag_cad.parts.model import Part
 from aag_cad.parts.products import part_frame
 from aag_cad.parts.triangles import Mesh
 from aag_cad.units import Floats

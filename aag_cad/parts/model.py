@@ -10,25 +10,11 @@ from typing import ClassVar, Literal, Protocol, TypeAlias
 
 from aag_cad.families import Family
 from aag_cad.geometry.framed import FramedCurve
-from aag_cad.parts.shapes.folded_plate import FoldedPlate
+from aag_cad.parts.forms import Blank, CrossHole, FoldedPlate, Frame, Hole
 from aag_cad.units import Vector
 
 SCHEMA_VERSION = 2
 JointKind: TypeAlias = Literal["AA", "AG", "boundary", "foot", "footing", "ridge", "blade", "cover"]
-HoleUse: TypeAlias = Literal["bolt", "screw"]
-
-
-@dataclass(frozen=True)
-class Frame:
-    """A right-handed local frame; the axes are unit vectors. UNMOVED is that of what is given in vault coordinates."""
-
-    origin: Vector
-    x: Vector
-    y: Vector
-    z: Vector
-
-
-UNMOVED = Frame((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 class Part(Protocol):
@@ -37,47 +23,6 @@ class Part(Protocol):
     @property
     def mark(self) -> str:
         """Its mark, which no other part has."""
-
-
-@dataclass(frozen=True)
-class CrossSection:
-    """Rectangle of a plank: width (the larger side) and thickness, mm."""
-
-    width: float
-    thickness: float
-
-
-@dataclass(frozen=True)
-class Hole:
-    """A hole through the thickness of a blank: centre (station, offset), diameter, mm; for which joint.
-
-    ``slot`` is how much longer than round it is, along the blank; 0 is round.
-    """
-
-    station: float
-    offset: float
-    diameter: float
-    use: HoleUse
-    joint: str
-    slot: float = 0.0
-
-
-@dataclass(frozen=True)
-class EndCut:
-    """The cut at an end of a blank: angle between the cut and the length in the width plane; 90 is square."""
-
-    angle_deg: float = 90.0
-
-
-@dataclass(frozen=True)
-class Blank:
-    """The straight plank as it is cut and drilled: the object of fabrication; holes sorted by station."""
-
-    length: float
-    section: CrossSection
-    holes: tuple[Hole, ...] = field(repr=False)
-    start_cut: EndCut = EndCut()
-    end_cut: EndCut = EndCut()
 
 
 @dataclass(frozen=True)
@@ -116,15 +61,6 @@ class Beam:
     planks: tuple[str, str]
     curve: FramedCurve = field(repr=False)
     joints: tuple[JointStation, ...] = field(repr=False)
-
-
-@dataclass(frozen=True)
-class CrossHole:
-    """A hole across a stud or block: height along the frame's own axis, direction as an angle about it, diameter."""
-
-    height: float
-    angle: float
-    diameter: float
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,10 @@ import hashlib
 from dataclasses import fields, is_dataclass
 
 from aag_cad.geometry.framed import FramedCurve
+from aag_cad.parts.forms import Frame
 from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.marks import number_of, short_mark
-from aag_cad.parts.model import Frame, Part
+from aag_cad.parts.model import Part
 from aag_cad.parts.quantities import sizes
 
 _OWN_TO_THE_PIECE = {"mark", "beam", "joints", "frame", "joint"}

@@ -14,10 +14,11 @@ from aag_cad.geometry.surface import unit
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork, NetworkCurve
 from aag_cad.parts.clearance import Obstacle, is_free, placed_points
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt
+from aag_cad.parts.forms import Blank, CrossSection, Hole
 from aag_cad.parts.joints import BuiltJoint
 from aag_cad.parts.marks import Mark, part_mark
 from aag_cad.parts.members import Drilling, curve_mark
-from aag_cad.parts.model import Blank, Bolt, CrossSection, Hole, Joint, Part, Strap
+from aag_cad.parts.model import Bolt, Joint, Part, Strap
 from aag_cad.units import Floats, vector
 
 _STEEL_END = 20.0

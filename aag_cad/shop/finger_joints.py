@@ -8,7 +8,8 @@ from typing import TypeAlias
 
 from aag_cad.design_making import Stock
 from aag_cad.findings import Finding
-from aag_cad.parts.model import FlatBar, Hole
+from aag_cad.parts.forms import Hole
+from aag_cad.parts.model import FlatBar
 from aag_cad.shop.stock import Piece, StockRules
 
 Interval: TypeAlias = tuple[float, float]

@@ -13,9 +13,10 @@ import numpy as np
 
 from aag_cad.errors import DesignError
 from aag_cad.once import once
+from aag_cad.parts.forms import Blank, EndCut
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import Blank, EndCut, FlatBar, Gridshell
+from aag_cad.parts.model import FlatBar, Gridshell
 from aag_cad.units import Floats
 
 TOLERANCE = 0.05

@@ -15,7 +15,8 @@ from scipy.optimize import LinearConstraint
 from aag_cad.design_making import Stock, Timber
 from aag_cad.errors import FileError
 from aag_cad.findings import Finding
-from aag_cad.parts.model import Blank, CrossSection, FlatBar, Hole
+from aag_cad.parts.forms import Blank, CrossSection, Hole
+from aag_cad.parts.model import FlatBar
 from aag_cad.shop.passports import REUSE_HEADER
 from aag_cad.shop.stock import times_cut
 

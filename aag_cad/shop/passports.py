@@ -8,8 +8,9 @@ import numpy as np
 from aag_cad.errors import DesignError
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.mechanics.checks.lamella import LamellaStress, lamella_stress
+from aag_cad.parts.forms import Blank, CrossSection
 from aag_cad.parts.index import sorted_planks
-from aag_cad.parts.model import Blank, CrossSection, FlatBar, Gridshell, Timber
+from aag_cad.parts.model import FlatBar, Gridshell, Timber
 from aag_cad.parts.quantities import largest_twist, smallest_radius
 from aag_cad.units import Floats
 

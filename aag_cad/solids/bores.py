@@ -9,7 +9,8 @@ from scipy.linalg import circulant
 
 from aag_cad.errors import SolidError
 from aag_cad.geometry.surface import unit
-from aag_cad.parts.model import FlatBar, Hole
+from aag_cad.parts.forms import Hole
+from aag_cad.parts.model import FlatBar
 from aag_cad.solids import brep
 from aag_cad.solids.board import Bore
 from aag_cad.units import Floats

@@ -8,9 +8,10 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakePrism, BRe
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Vec
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Solid
 
+from aag_cad.parts.forms import FoldedPlate
 from aag_cad.parts.model import Stud
 from aag_cad.parts.shapes.box import Box
-from aag_cad.parts.shapes.folded_plate import FoldedPlate, hole_axes, plate_rings
+from aag_cad.parts.shapes.folded_plate import hole_axes, plate_rings
 from aag_cad.parts.shapes.threaded import Threaded
 from aag_cad.parts.triangles import regular_polygon
 from aag_cad.solids.brep import the_solid

@@ -7,8 +7,9 @@ import numpy as np
 from aag_cad.colours import LEGEND
 from aag_cad.families import BEAMS, FAMILIES, LAYERS
 from aag_cad.language import Language, figure, say
+from aag_cad.parts.forms import CrossSection
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Bolt, CrossSection, Shell
+from aag_cad.parts.model import Bolt, Shell
 from assembly.drawing.names import family_name
 from assembly.drawing.svg import Style, circle, group, line, polygon, rectangle, svg, text
 

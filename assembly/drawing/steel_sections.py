@@ -8,11 +8,12 @@ from aag_cad.colours import LEGEND
 from aag_cad.geometry.framed import frames_at
 from aag_cad.language import Language, figure, say
 from aag_cad.parts.forming import formed_points
+from aag_cad.parts.forms import FoldedPlate, Frame
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import shell_of
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Blade, Bolt, FlatBar, Frame, Gridshell, Joint, Plank, Shell, Shoe, Strap
-from aag_cad.parts.shapes.folded_plate import FoldedPlate, plate_rings
+from aag_cad.parts.model import Blade, Bolt, FlatBar, Gridshell, Joint, Plank, Shell, Shoe, Strap
+from aag_cad.parts.shapes.folded_plate import plate_rings
 from aag_cad.parts.shapes.threaded import BoltPiece, bolt_form, rod_form
 from aag_cad.units import Floats, vector
 from assembly.drawing.joint_sections import callout

@@ -7,11 +7,12 @@ from typing import NotRequired, TypedDict
 import networkx as nx
 import numpy as np
 
+from aag_cad.parts.forms import UNMOVED, Frame
 from aag_cad.parts.index import Index, index_of
 from aag_cad.parts.kinds import kind_of, shaped
 from aag_cad.parts.marks import parse_mark, shell_of
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import UNMOVED, Frame, Gridshell, Joint, Part, Shell, all_parts, ridge_parts, shell_parts
+from aag_cad.parts.model import Gridshell, Joint, Part, Shell, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame
 from aag_cad.parts.quantities import mass, sizes
 from aag_cad.units import Floats, Vector, vector

@@ -7,10 +7,11 @@ import numpy as np
 
 from aag_cad.findings import Finding
 from aag_cad.language import Text
+from aag_cad.parts.forms import Frame
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Frame, Gridshell
+from aag_cad.parts.model import Gridshell
 from aag_cad.units import Floats, vector
 from assembly.base.segments import Limits, Pose, Segment, Segmentation, Splice
 from assembly.transport.cut_pieces import Divisible, Stretch, cut_stops, divisible, stop_splices, stretch_between

@@ -11,8 +11,9 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from aag_cad.mechanics.checks.fastener_spacing import bolt_distances
+from aag_cad.parts.forms import Hole
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import FlatBar, Hole, Shell
+from aag_cad.parts.model import FlatBar, Shell
 from assembly.base.segments import PlankCut, Splice
 from assembly.graph.cut_lines import CutLines, CutMember, CutPlace
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from aag_cad.geometry.framed import FramedCurve
+from aag_cad.parts.forms import Blank, CrossSection
 from aag_cad.parts.marks import shell_of
-from aag_cad.parts.model import Blank, CrossSection, Gridshell, Plank, Shell, all_parts
+from aag_cad.parts.model import Gridshell, Plank, Shell, all_parts
 from assembly.base.errors import PlanError
 from assembly.base.phases import DOWN_PHASES
 from assembly.base.steps import Plan, StepProp

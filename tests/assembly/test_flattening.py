@@ -10,19 +10,8 @@ from aag_cad.design import load_design
 from aag_cad.families import Family
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.language import printed
-from aag_cad.parts.model import (
-    UNMOVED,
-    Beam,
-    Blank,
-    CrossSection,
-    Gridshell,
-    Joint,
-    JointKind,
-    JointStation,
-    Plank,
-    Shell,
-    Stud,
-)
+from aag_cad.parts.forms import UNMOVED, Blank, CrossSection
+from aag_cad.parts.model import Beam, Gridshell, Joint, JointKind, JointStation, Plank, Shell, Stud
 from aag_cad.pipeline import gridshell_of
 from aag_cad.units import Floats, vector
 from assembly.base.errors import PlanError

@@ -9,7 +9,8 @@ import pytest
 
 from aag_cad.design import Design
 from aag_cad.geometry.framed import framed_curve
-from aag_cad.parts.model import Blank, CrossSection, Frame, Gridshell, Joint, JointStation, Plank, Shell
+from aag_cad.parts.forms import Blank, CrossSection, Frame
+from aag_cad.parts.model import Gridshell, Joint, JointStation, Plank, Shell
 from aag_cad.units import Floats, vector
 from assembly.base.errors import PlanError
 from assembly.graph.gridshell_graph import assembly_graph

@@ -16,8 +16,9 @@ from aag_cad.errors import FileError
 from aag_cad.export.ifc.frame import project_id
 from aag_cad.export.workshop.btlx import write_btlx
 from aag_cad.parts.forming import formed_points
+from aag_cad.parts.forms import EndCut, Frame
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Bolt, EndCut, Frame, Gridshell, Plank, Screw
+from aag_cad.parts.model import Bolt, Gridshell, Plank, Screw
 from aag_cad.parts.quantities import mass
 from aag_cad.units import Floats
 

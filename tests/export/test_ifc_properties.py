@@ -14,9 +14,10 @@ from aag_cad.export.ifc.model import ifc_model
 from aag_cad.export.ifc.options import IfcOptions
 from aag_cad.export.ifc.properties import hole_text
 from aag_cad.export.ifc.schedule import PlannedWork
+from aag_cad.parts.forms import Hole
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import shell_of
-from aag_cad.parts.model import Footing, Gridshell, Hole, Part, Plank, Rod, Strip, all_parts
+from aag_cad.parts.model import Footing, Gridshell, Part, Plank, Rod, Strip, all_parts
 from aag_cad.parts.quantities import largest_twist, mass, material_name, smallest_radius
 from aag_cad.parts.shapes.sheet import flat_pattern
 from aag_cad.shop.groups import drill_groups

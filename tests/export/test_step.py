@@ -27,10 +27,11 @@ from aag_cad.design import Design
 from aag_cad.errors import FileError, SolidError
 from aag_cad.export.cad.step import write_step
 from aag_cad.export.cad.step_text import Header
+from aag_cad.parts.forms import Hole
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import colour
 from aag_cad.parts.mesh import placed, shell_mesh
-from aag_cad.parts.model import Gridshell, Hole, Plank, Shell, all_parts, ridge_parts, shell_parts
+from aag_cad.parts.model import Gridshell, Plank, Shell, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
 from aag_cad.parts.triangles import Mesh
 from aag_cad.pipeline import gridshell_of

@@ -12,7 +12,8 @@ from pypdf import PageObject, PdfReader
 
 from aag_cad.errors import DesignError
 from aag_cad.export.workshop.drill_templates import PAPERS, PaperName, part_stations, templates_pdf
-from aag_cad.parts.model import Blank, CrossSection, EndCut, Gridshell, Hole, Plank
+from aag_cad.parts.forms import Blank, CrossSection, EndCut, Hole
+from aag_cad.parts.model import Gridshell, Plank
 from aag_cad.units import Floats
 
 MM_PER_POINT = 25.4 / 72.0

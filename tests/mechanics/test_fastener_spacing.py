@@ -19,7 +19,8 @@ from aag_cad.mechanics.checks.fastener_spacing import (
 )
 from aag_cad.network.model import CurveNetwork
 from aag_cad.parts.build import gridshell_from
-from aag_cad.parts.model import Gridshell, Hole
+from aag_cad.parts.forms import Hole
+from aag_cad.parts.model import Gridshell
 from aag_cad.resources import template
 
 MARK = "S1-A1-06-L"

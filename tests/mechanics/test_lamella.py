@@ -7,7 +7,8 @@ import pytest
 
 from aag_cad.geometry.framed import FramedCurve, framed_curve
 from aag_cad.mechanics.checks.lamella import lamella_stress, unrolled_bow
-from aag_cad.parts.model import Blank, CrossSection, Gridshell, Plank, Timber
+from aag_cad.parts.forms import Blank, CrossSection
+from aag_cad.parts.model import Gridshell, Plank, Timber
 from aag_cad.units import Floats, deg_per_m
 
 # A quintic spline with a sample every 150 mm keeps the curvature of a 1.7 m arc to about 2e-6.

@@ -10,19 +10,8 @@ from aag_cad.geometry.framed import FramedCurve, framed_curve
 from aag_cad.mechanics.frame.model import FrameError, NodalLoad, Support, rectangle_section
 from aag_cad.mechanics.frame.shell import SHORTEST_END, ShellFrame, shell_frame
 from aag_cad.mechanics.frame.statics import lowest_modes, static_solution
-from aag_cad.parts.model import (
-    Beam,
-    Blank,
-    CrossSection,
-    Frame,
-    Gridshell,
-    Joint,
-    JointStation,
-    Plank,
-    Shell,
-    Timber,
-    shell_parts,
-)
+from aag_cad.parts.forms import Blank, CrossSection, Frame
+from aag_cad.parts.model import Beam, Gridshell, Joint, JointStation, Plank, Shell, Timber, shell_parts
 from aag_cad.parts.quantities import mass
 from aag_cad.units import Floats, Vector, vector
 

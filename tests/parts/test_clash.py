@@ -7,7 +7,8 @@ import pytest
 
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.parts.clash import clashes
-from aag_cad.parts.model import Frame, Gridshell, Shell
+from aag_cad.parts.forms import Frame
+from aag_cad.parts.model import Gridshell, Shell
 from aag_cad.units import vector
 
 

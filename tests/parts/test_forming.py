@@ -15,8 +15,9 @@ from aag_cad.geometry.revolution import AsymptoticChart
 from aag_cad.geometry.surface import unit_normals
 from aag_cad.network.model import CurveNetwork
 from aag_cad.parts.forming import axis_piercings, blank_points, formed_points, plank_axes
+from aag_cad.parts.forms import Blank, CrossSection, Frame
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Beam, Blank, CrossSection, Frame, Gridshell, Plank, Shell
+from aag_cad.parts.model import Beam, Gridshell, Plank, Shell
 from aag_cad.units import Floats
 
 R0, SQRT3 = 5100.0, math.sqrt(3.0)

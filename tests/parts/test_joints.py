@@ -9,10 +9,10 @@ import pytest
 from aag_cad.design import Design
 from aag_cad.geometry.framed import frames_at
 from aag_cad.parts.forming import blank_points, plank_axes
+from aag_cad.parts.forms import Frame
 from aag_cad.parts.model import (
     Bolt,
     CouplingBlock,
-    Frame,
     Gridshell,
     Joint,
     Plank,

@@ -8,8 +8,9 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
+from aag_cad.parts.forms import Frame
 from aag_cad.parts.mesh import frame_matrix, placed, product_mesh, shell_mesh
-from aag_cad.parts.model import Frame, Part, Shell, shell_parts
+from aag_cad.parts.model import Part, Shell, shell_parts
 from aag_cad.parts.products import part_frame, product_key
 from aag_cad.parts.shapes.bar import plank_mesh
 from aag_cad.parts.triangles import Mesh, joined, prism, regular_polygon, round_polygon

@@ -10,18 +10,8 @@ import pytest
 from aag_cad.design import Design
 from aag_cad.geometry.framed import frames_at
 from aag_cad.network.model import CurveNetwork
-from aag_cad.parts.model import (
-    FlatBar,
-    Frame,
-    Gridshell,
-    Part,
-    Plank,
-    Shell,
-    all_joints,
-    all_parts,
-    ridge_parts,
-    shell_parts,
-)
+from aag_cad.parts.forms import Frame
+from aag_cad.parts.model import FlatBar, Gridshell, Part, Plank, Shell, all_joints, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame
 from aag_cad.units import Floats
 

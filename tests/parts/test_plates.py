@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
+from aag_cad.parts.forms import FoldedPlate, PlateHole
 from aag_cad.parts.shapes.folded_plate import (
-    FoldedPlate,
-    PlateHole,
     developed_length,
     hole_axes,
     plate_depth,

@@ -5,18 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from aag_cad.parts.model import (
-    ClampingBar,
-    Gridshell,
-    Hole,
-    Mullion,
-    Plank,
-    Shell,
-    Strap,
-    Strip,
-    all_parts,
-    shell_parts,
-)
+from aag_cad.parts.forms import Hole
+from aag_cad.parts.model import ClampingBar, Gridshell, Mullion, Plank, Shell, Strap, Strip, all_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
 
 

@@ -8,18 +8,14 @@ import pytest
 
 from aag_cad.design import Design
 from aag_cad.geometry.framed import FramedCurve, framed_curve
+from aag_cad.parts.forms import Blank, CrossHole, CrossSection, Frame, Hole
 from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.mesh import product_mesh
 from aag_cad.parts.model import (
     Blade,
-    Blank,
     Bolt,
     CouplingBlock,
-    CrossHole,
-    CrossSection,
-    Frame,
     Gridshell,
-    Hole,
     Plank,
     Screw,
     Shell,

@@ -6,7 +6,8 @@ import pytest
 
 from aag_cad.design import Design, load_design
 from aag_cad.design_making import Stock
-from aag_cad.parts.model import Gridshell, Hole, Plank
+from aag_cad.parts.forms import Hole
+from aag_cad.parts.model import Gridshell, Plank
 from aag_cad.pipeline import gridshell_of
 from aag_cad.shop.finger_joints import board_rules, joint_stations, plank_pieces
 

@@ -15,9 +15,10 @@ from aag_cad.design import Design
 from aag_cad.errors import DesignError
 from aag_cad.network.model import CurveNetwork
 from aag_cad.parts.build import gridshell_from
+from aag_cad.parts.forms import Blank, CrossSection, EndCut, Hole
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import Blank, CrossSection, EndCut, Gridshell, Hole, Plank
+from aag_cad.parts.model import Gridshell, Plank
 from aag_cad.shop.groups import (
     HOW_TO_LAY,
     LAID,

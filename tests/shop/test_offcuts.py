@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from aag_cad.design import Design
 from aag_cad.design_making import Stock
 from aag_cad.errors import FileError
-from aag_cad.parts.model import Blank, CrossSection, Gridshell, Hole
+from aag_cad.parts.forms import Blank, CrossSection, Hole
+from aag_cad.parts.model import Gridshell
 from aag_cad.shop.offcuts import OldPlank, barred_starts, fitting_planks, read_offcuts, reused_planks
 from aag_cad.shop.passports import REUSE_HEADER, passports, reuse_row
 

@@ -12,7 +12,8 @@ from aag_cad.errors import DesignError
 from aag_cad.geometry.framed import framed_curve
 from aag_cad.mechanics.checks.lamella import lamella_stress
 from aag_cad.parts.forming import formed_points, plank_axes
-from aag_cad.parts.model import Blank, CrossSection, Gridshell, Hole, Plank, Shell, Timber
+from aag_cad.parts.forms import Blank, CrossSection, Hole
+from aag_cad.parts.model import Gridshell, Plank, Shell, Timber
 from aag_cad.parts.quantities import largest_twist, smallest_radius
 from aag_cad.shop.passports import (
     REUSE_HEADER,

@@ -16,7 +16,8 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape, TopoDS_Solid
 from solid_figures import signed_volume
 
 from aag_cad.errors import SolidError
-from aag_cad.parts.model import Bolt, CouplingBlock, CrossHole, Frame, Hole, Screw, Stud
+from aag_cad.parts.forms import CrossHole, Frame, Hole
+from aag_cad.parts.model import Bolt, CouplingBlock, Screw, Stud
 from aag_cad.solids.products import product_solid
 from aag_cad.units import Floats
 

@@ -26,7 +26,8 @@ from aag_cad.geometry.profiles import CrpcProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
 from aag_cad.geometry.surface import unit_normals
 from aag_cad.parts.forming import formed_points, plank_axes
-from aag_cad.parts.model import Blank, CrossSection, EndCut, Hole, Plank
+from aag_cad.parts.forms import Blank, CrossSection, EndCut, Hole
+from aag_cad.parts.model import Plank
 from aag_cad.solids.brep import checked, solid
 from aag_cad.solids.planks import formed_plank
 from aag_cad.units import Floats

@@ -9,10 +9,11 @@ from trimesh.visual.material import PBRMaterial
 
 from aag_cad.colours import LEGEND, linear
 from aag_cad.files import write_bytes
+from aag_cad.parts.forms import Frame
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import colour_name, kind_of
 from aag_cad.parts.mesh import frame_matrix, product_mesh
-from aag_cad.parts.model import Frame, Gridshell, Part, ridge_parts, shell_parts
+from aag_cad.parts.model import Gridshell, Part, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_name
 from aag_cad.parts.triangles import Mesh
 from aag_cad.units import MM_PER_M, Floats

@@ -14,9 +14,10 @@ from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTo
 
 from aag_cad.export.cad.step_text import Header, kernel_settings, named, placement, step_bytes
 from aag_cad.files import write_bytes
+from aag_cad.parts.forms import Frame
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import colour
-from aag_cad.parts.model import Frame, Gridshell, Shell, ridge_parts, shell_parts
+from aag_cad.parts.model import Gridshell, Shell, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_name
 from aag_cad.solids.products import product_solids
 

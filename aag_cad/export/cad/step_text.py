@@ -22,7 +22,7 @@ from OCP.XCAFDoc import XCAFDoc_ShapeTool
 
 from aag_cad import __version__
 from aag_cad.errors import SolidError
-from aag_cad.parts.model import Frame
+from aag_cad.parts.forms import Frame
 
 _TEXT_SETTINGS = {"write.step.schema": "AP242DIS", "write.step.unit": "MM"}
 _NUMBER_SETTINGS = {"write.step.assembly": 1, "write.surfacecurve.mode": 0, "write.step.nonmanifold": 0}

@@ -11,7 +11,8 @@ import ifcopenshell.guid
 from aag_cad import __version__
 from aag_cad.export.ifc.options import IfcOptions, IfcSchema, view_definition
 from aag_cad.export.ifc.schemas import known
-from aag_cad.parts.model import Frame, Gridshell
+from aag_cad.parts.forms import Frame
+from aag_cad.parts.model import Gridshell
 from aag_cad.units import Vector
 
 Entity: TypeAlias = ifcopenshell.entity_instance

@@ -16,9 +16,10 @@ from aag_cad.export.ifc.site import spatial_tree
 from aag_cad.export.ifc.standard_sets import write_product_sets, write_serial_numbers
 from aag_cad.export.ifc.types import Product, define_types, products
 from aag_cad.files import replacing
+from aag_cad.parts.forms import Frame
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import kind_of
-from aag_cad.parts.model import Frame, Gridshell, Part, Shell, all_joints, all_parts, ridge_parts, shell_parts
+from aag_cad.parts.model import Gridshell, Part, Shell, all_joints, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame
 from aag_cad.shop.groups import templates_of
 

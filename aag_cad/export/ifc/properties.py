@@ -5,13 +5,13 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from aag_cad.export.ifc.frame import Entity, IfcModel
 from aag_cad.export.ifc.sets import Property, write_property_set
+from aag_cad.parts.forms import CrossHole, Hole, PlateHole
 from aag_cad.parts.kinds import kind_of, shaped
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import CrossHole, Hole, Part, Plank, Timber
+from aag_cad.parts.model import Part, Plank, Timber
 from aag_cad.parts.products import product_name
 from aag_cad.parts.quantities import hole_count, largest_twist, mass, sizes, smallest_radius
 from aag_cad.parts.shapes.bar import BAR
-from aag_cad.parts.shapes.folded_plate import PlateHole
 from aag_cad.units import deg_per_m
 
 FABRICATION = "AAG_Fabrication"

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 from typing import Literal, TypeAlias, get_args
 
+from aag_cad.parts.forms import Blank, Hole, HoleUse
 from aag_cad.parts.marks import short_mark
-from aag_cad.parts.model import Blank, Hole, HoleUse, Timber
+from aag_cad.parts.model import Timber
 from aag_cad.shop.groups import HOW_TO_LAY, DrillGroup, cut_slope, drawn_face
 
 Point: TypeAlias = tuple[float, float]

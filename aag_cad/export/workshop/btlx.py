@@ -10,9 +10,10 @@ from xml.etree import ElementTree
 from aag_cad import __version__
 from aag_cad.errors import FileError
 from aag_cad.files import write_bytes
+from aag_cad.parts.forms import Hole
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import family_mark, shell_of
-from aag_cad.parts.model import Gridshell, Hole, Plank
+from aag_cad.parts.model import Gridshell, Plank
 from aag_cad.parts.quantities import mass
 from aag_cad.shop.passports import clear_stretches
 

@@ -22,8 +22,9 @@ from aag_cad.export.workshop.blank_drawings import (
     spread,
 )
 from aag_cad.files import write_bytes
+from aag_cad.parts.forms import Blank, Hole
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import Blank, Gridshell, Hole, Timber
+from aag_cad.parts.model import Gridshell, Timber
 from aag_cad.shop.groups import DrillGroup, drawn_face, drilled_joints, templates_of
 from aag_cad.typesetting import printout_pdf
 from aag_cad.units import MM_PER_M

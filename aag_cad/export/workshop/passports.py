@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from aag_cad.files import write_bytes, write_csv, write_text
+from aag_cad.parts.forms import Blank, Hole
 from aag_cad.parts.marks import short_mark
-from aag_cad.parts.model import Blank, Gridshell, Hole
+from aag_cad.parts.model import Gridshell
 from aag_cad.shop.passports import (
     REUSE_HEADER,
     SERVICE_LIFE_YEARS,

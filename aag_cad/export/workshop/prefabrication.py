@@ -20,8 +20,9 @@ from aag_cad.mechanics.siblings import (
     over_drilled,
     sprung_shape,
 )
+from aag_cad.parts.forms import Hole
 from aag_cad.parts.index import index_of
-from aag_cad.parts.model import FlatBar, Gridshell, Hole, Shell, Timber
+from aag_cad.parts.model import FlatBar, Gridshell, Shell, Timber
 from aag_cad.parts.twins import made_for_each
 
 PREFABRICATION_HEADER = (

@@ -15,9 +15,10 @@ import numpy as np
 
 from aag_cad.findings import Finding
 from aag_cad.language import printed
+from aag_cad.parts.forms import Hole, HoleUse
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import parse_mark
-from aag_cad.parts.model import CouplingBlock, FlatBar, Gridshell, Hole, HoleUse, Screw, all_joints
+from aag_cad.parts.model import CouplingBlock, FlatBar, Gridshell, Screw, all_joints
 from aag_cad.units import Floats
 
 ROUNDING = 0.05

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from aag_cad.parts.model import Hole
+from aag_cad.parts.forms import Hole
 from aag_cad.parts.shapes.shape import Shape
 from aag_cad.parts.triangles import Mesh, circle_area, prism
 from aag_cad.units import Floats

@@ -6,33 +6,12 @@ from itertools import pairwise
 import numpy as np
 
 from aag_cad.geometry.surface import dot, unit
+from aag_cad.parts.forms import FoldedPlate
 from aag_cad.parts.shapes.shape import Shape
 from aag_cad.parts.triangles import tube
 from aag_cad.units import Floats
 
 _POINT_SPACING = 4.0
-
-
-@dataclass(frozen=True)
-class PlateHole:
-    """A round hole through a folded plate: station along its line, offset across it, diameter, mm."""
-
-    station: float
-    offset: float
-    diameter: float
-
-
-@dataclass(frozen=True)
-class FoldedPlate:
-    """A steel plate folded along parallel lines: its centre line (x, z) in the plane y = 0 of its frame; width along y.
-
-    ``line`` is a polyline; a hole is square to the leg that it lies in.
-    """
-
-    line: tuple[tuple[float, float], ...]
-    width: float
-    thickness: float
-    holes: tuple[PlateHole, ...]
 
 
 @dataclass(frozen=True, eq=False)
