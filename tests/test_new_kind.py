@@ -84,7 +84,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def built(made: None, folder: Path) -> Build:
     """A vault on six geodesics a shell, with packing plates, in all files that hold parts."""
-    text, _ = design_text("vault")
+    text = design_text("vault")
     text = text.replace("geodesics = 14 ", "geodesics = 6 ")
     outputs = ("gridshell", "step", "ifc", "glb", "tables", "shop", "labels", "plan", "schedule", "sequence")
     return build(parse_design(text), folder, outputs)
