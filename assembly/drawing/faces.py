@@ -1,13 +1,14 @@
 """The faces of a gridshell for pictures: quadrilaterals of timber, steel plates and concrete in vault coordinates."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from aag_cad.colours import LEGEND, srgb
+from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.mesh import frame_matrix, shell_mesh
-from aag_cad.parts.model import Footing, Gridshell, Part, Shell, Stud
+from aag_cad.parts.model import Footing, Gridshell, Part, Shell, Stud, ridge_parts, shell_parts
 from aag_cad.parts.triangles import regular_polygon
 from aag_cad.units import Floats
 from assembly.drawing.part_outlines import plank_rings
@@ -66,29 +67,27 @@ def picture_spacing(gridshell: Gridshell) -> float:
     return max(LEAST_SPACING, total / _MOST_SEGMENTS)
 
 
+def _steel_faces(parts: Iterable[Part]) -> Iterator[tuple[Floats, str]]:
+    for part in parts:
+        if kind_of(part).role == "connector" and kind_of(part).material == "steel":
+            mesh = shell_mesh(part)
+            yield mesh.vertices[mesh.faces[:, [0, 1, 2, 2]]], "steel"
+
+
 def _shell_faces(shell: Shell, spacing: float) -> Iterator[tuple[Floats, str]]:
     for plank in shell.planks:
         yield placed_points(tube_faces(plank_rings(plank, spacing)), shell), plank.family
     for stud in shell.studs:
         yield placed_points(_stud_faces(stud), shell), "stud"
-    fittings: tuple[Part, ...] = (*shell.shoes, *shell.straps)
-    for part in fittings:
-        mesh = shell_mesh(part)
-        yield placed_points(mesh.vertices, shell)[mesh.faces[:, [0, 1, 2, 2]]], "steel"
+    yield from ((placed_points(faces, shell), colour) for faces, colour in _steel_faces(shell_parts(shell)))
     for footing in shell.footings:
         yield placed_points(_top_face(footing), shell), "concrete"
-
-
-def _blade_faces(gridshell: Gridshell) -> Iterator[tuple[Floats, str]]:
-    for blade in gridshell.blades:
-        mesh = shell_mesh(blade)
-        yield mesh.vertices[mesh.faces[:, [0, 1, 2, 2]]], "steel"
 
 
 def gridshell_faces(gridshell: Gridshell) -> Faces:
     """Return the faces of timber, steel plates and concrete in vault coordinates; the cover would hide them all."""
     spacing = picture_spacing(gridshell)
     listed = [item for shell in gridshell.shells for item in _shell_faces(shell, spacing)]
-    listed += _blade_faces(gridshell)
+    listed += _steel_faces(ridge_parts(gridshell))
     colours = [np.tile(255.0 * np.array(srgb(LEGEND[name])), (len(faces), 1)) for faces, name in listed]
     return Faces(np.concatenate([faces for faces, _ in listed]), np.concatenate(colours))
