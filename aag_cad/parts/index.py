@@ -1,6 +1,5 @@
 """What a shell or a gridshell holds, by mark: made at the first question and kept, so that nobody builds it again."""
 
-from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -42,100 +41,36 @@ def _by_mark(items: Iterable[_T]) -> dict[str, _T]:
 
 @dataclass(frozen=True, eq=False)
 class Index:
-    """Parts, beams and joints by mark, each in the order of the model; made by ``index_of``."""
+    """Parts, beams and joints by mark, each in the order of the model; made by ``index_of``.
 
-    listed_shells: tuple[Shell, ...]
-    listed_beams: tuple[Beam, ...]
-    listed_parts: tuple[Part, ...]
-    listed_joints: tuple[Joint, ...]
+    ``geodesics`` are the planks that lie flat, from side to side, ``edges`` those along the edges. ``twins`` gives for
+    each of the ``shells`` of a gridshell the first one of its twins, often itself; a shell's own index has neither.
+    Bolts and joints of a gridshell are those of its ridges too.
+    """
 
-    def _of(self, kind: type[_T]) -> dict[str, _T]:
-        return _by_mark(part for part in self.listed_parts if isinstance(part, kind))
-
-    @cached_property
-    def shells(self) -> dict[str, Shell]:
-        """The shells of a gridshell."""
-        return _by_mark(self.listed_shells)
-
-    @cached_property
-    def twins(self) -> dict[str, str]:
-        """The first shell of those that are twins of each other, for each shell; often it is the shell itself."""
-        firsts: dict[str, str] = {}
-        return {mark: firsts.setdefault(shell.twin_of or mark, mark) for mark, shell in self.shells.items()}
-
-    @cached_property
-    def parts(self) -> dict[str, Part]:
-        """Every part."""
-        return _by_mark(self.listed_parts)
+    shells: dict[str, Shell]
+    twins: dict[str, str]
+    parts: dict[str, Part]
+    planks: dict[str, Plank]
+    geodesics: dict[str, Plank]
+    edges: dict[str, Plank]
+    studs: dict[str, Stud]
+    blocks: dict[str, CouplingBlock]
+    bolts: dict[str, Bolt]
+    screws: dict[str, Screw]
+    straps: dict[str, Strap]
+    beams: dict[str, Beam]
+    joints: dict[str, Joint]
 
     @cached_property
     def keys(self) -> dict[str, str]:
         """The key of the product of each part (``aag_cad.parts.products.product_key``)."""
-        return {part.mark: product_key(part) for part in self.listed_parts}
-
-    @cached_property
-    def planks(self) -> dict[str, Plank]:
-        """The planks."""
-        return self._of(Plank)
-
-    @cached_property
-    def geodesics(self) -> dict[str, Plank]:
-        """The planks that lie flat along geodesics, from side to side."""
-        return {mark: plank for mark, plank in self.planks.items() if plank.family in GEODESICS}
-
-    @cached_property
-    def edges(self) -> dict[str, Plank]:
-        """The planks along the edges."""
-        return {mark: plank for mark, plank in self.planks.items() if plank.family in EDGES}
-
-    @cached_property
-    def studs(self) -> dict[str, Stud]:
-        """The studs."""
-        return self._of(Stud)
-
-    @cached_property
-    def blocks(self) -> dict[str, CouplingBlock]:
-        """The coupling blocks."""
-        return self._of(CouplingBlock)
-
-    @cached_property
-    def bolts(self) -> dict[str, Bolt]:
-        """The bolts, of a gridshell those of its ridges too."""
-        return self._of(Bolt)
-
-    @cached_property
-    def screws(self) -> dict[str, Screw]:
-        """The screws."""
-        return self._of(Screw)
-
-    @cached_property
-    def straps(self) -> dict[str, Strap]:
-        """The straps."""
-        return self._of(Strap)
-
-    @cached_property
-    def beams(self) -> dict[str, Beam]:
-        """The coupled beams."""
-        return _by_mark(self.listed_beams)
-
-    @cached_property
-    def joints(self) -> dict[str, Joint]:
-        """The joints, of a gridshell those of its ridges too."""
-        return _by_mark(self.listed_joints)
-
-    @cached_property
-    def joints_of(self) -> dict[str, tuple[Joint, ...]]:
-        """The joints at which a part is a member, in the order of the model."""
-        found: dict[str, list[Joint]] = defaultdict(list)
-        for joint in self.listed_joints:
-            for member in joint.members:
-                found[member].append(joint)
-        return {mark: tuple(joints) for mark, joints in found.items()}
+        return {mark: product_key(part) for mark, part in self.parts.items()}
 
     @cached_property
     def joint_of_fastener(self) -> dict[str, Joint]:
         """The joint that a fastener belongs to, by the fastener's mark."""
-        return {fastener: joint for joint in self.listed_joints for fastener in joint.fasteners}
+        return {fastener: joint for joint in self.joints.values() for fastener in joint.fasteners}
 
     @cached_property
     def stations(self) -> dict[tuple[str, str], float]:
@@ -172,10 +107,32 @@ class Index:
 @once
 def index_of(whole: Shell | Gridshell) -> Index:
     """Return what a shell, or a whole gridshell, holds by mark: the same index at every call for the same object."""
+    shells: tuple[Shell, ...] = ()
     if isinstance(whole, Shell):
-        return Index((), whole.beams, shell_parts(whole), whole.joints)
-    beams = tuple(beam for shell in whole.shells for beam in shell.beams)
-    return Index(whole.shells, beams, all_parts(whole), all_joints(whole))
+        beams, parts, joints = whole.beams, shell_parts(whole), whole.joints
+    else:
+        shells, parts, joints = whole.shells, all_parts(whole), all_joints(whole)
+        beams = tuple(beam for shell in shells for beam in shell.beams)
+
+    def of(kind: type[_T]) -> dict[str, _T]:
+        return _by_mark(part for part in parts if isinstance(part, kind))
+
+    firsts: dict[str, str] = {}
+    return Index(
+        shells=_by_mark(shells),
+        twins={shell.mark: firsts.setdefault(shell.twin_of or shell.mark, shell.mark) for shell in shells},
+        parts=_by_mark(parts),
+        planks=of(Plank),
+        geodesics={mark: plank for mark, plank in of(Plank).items() if plank.family in GEODESICS},
+        edges={mark: plank for mark, plank in of(Plank).items() if plank.family in EDGES},
+        studs=of(Stud),
+        blocks=of(CouplingBlock),
+        bolts=of(Bolt),
+        screws=of(Screw),
+        straps=of(Strap),
+        beams=_by_mark(beams),
+        joints=_by_mark(joints),
+    )
 
 
 def sorted_planks(gridshell: Gridshell) -> list[Plank]:

@@ -99,6 +99,18 @@ def _outline(
     )
 
 
+def clipped(points: Floats, start: float, end: float) -> Floats:
+    """Return the part of an outline (2 k, 2) of a plank between two shares of its length."""
+    count = len(points) // 2
+    even = np.linspace(0.0, 1.0, count)
+    at = np.unique([start, end, *even[(even > start) & (even < end)]])
+    sides = [
+        np.column_stack([np.interp(at, even, side[:, i]) for i in (0, 1)])
+        for side in (points[:count], points[: count - 1 : -1])
+    ]
+    return np.concatenate([sides[0], sides[1][::-1]])
+
+
 def shell_outline(shell: Shell, width: float, margin: float, drawn: tuple[Place, ...] = ()) -> Outline:
     """Return a shell square on from outside, its foot at the bottom; ``drawn`` are places of pieces besides planks."""
     return _outline([_group(shell, np.eye(4), drawn)], shell_view(shell), width, margin)

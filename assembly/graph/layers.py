@@ -10,7 +10,6 @@ import numpy as np
 
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Joint, Shell
-from aag_cad.units import Floats
 from assembly.base.errors import PlanError
 from assembly.graph.circles import circle_links, knots, part_of, relations
 from assembly.graph.laying_units import Overlap
@@ -26,26 +25,20 @@ class Level:
     mark: str
 
 
-def _points_at_joints(shell: Shell) -> dict[tuple[str, str], Floats]:
-    """Return the point (3,) of each plank's centre line at each of its joints, by plank and joint mark."""
-    points: dict[tuple[str, str], Floats] = {}
-    for plank in shell.planks:
-        if plank.joints:
-            found = plank.curve.point_spline(np.array([joint.station for joint in plank.joints]))
-            points |= {(plank.mark, place.joint): p for place, p in zip(plank.joints, found, strict=True)}
-    return points
-
-
 def crossing_levels(shell: Shell) -> dict[str, tuple[Level, ...]]:
     """Return planks, studs and blocks of every joint of a shell from the lowest to the highest along its normal."""
-    points = _points_at_joints(shell)
-    hubs = index_of(shell).studs | index_of(shell).blocks
+    index = index_of(shell)
+    hubs = index.studs | index.blocks
 
     def levels(joint: Joint) -> Iterator[Level]:
         for mark in joint.members:
-            point = np.array(hubs[mark].frame.origin) if mark in hubs else points.get((mark, joint.mark))
-            if point is not None:
-                yield Level(float((point - np.array(joint.point)) @ np.array(joint.normal)), mark)
+            if mark in hubs:
+                point = np.array(hubs[mark].frame.origin)
+            elif (mark, joint.mark) in index.stations:
+                point = index.planks[mark].curve.point_spline(index.stations[mark, joint.mark])
+            else:
+                continue
+            yield Level(float((point - np.array(joint.point)) @ np.array(joint.normal)), mark)
 
     return {joint.mark: tuple(sorted(levels(joint))) for joint in shell.joints}
 

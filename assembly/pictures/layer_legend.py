@@ -69,27 +69,25 @@ def _beside(stud: Stud, joint: Joint, shell: Shell) -> tuple[Beam, Beam, Couplin
     beams = sorted((beam for beam in shell.beams if set(beam.planks) & set(joint.members)), key=lambda beam: beam.layer)
     if len(beams) != 2:
         return None
-    blocks = index_of(shell).blocks
-    joints = {joint.mark: joint for joint in shell.joints if joint.kind == "AG"}
-    here = next(place.station for place in beams[0].joints if place.joint == stud.mark)
-    near = sorted((abs(p.station - here), p.joint, p.station - here) for p in beams[0].joints if p.joint in joints)
-    geodesics = index_of(shell).geodesics
-    normal, ahead = np.array(stud.frame.z), _tangent(beams[0], stud.mark)
-    for _, mark, away in near:
-        crossing = [geodesics[member] for member in joints[mark].members if member in geodesics]
-        if crossing and mark in blocks and away * float(np.cross(_tangent(crossing[0], mark), normal) @ ahead) > 0.0:
-            return beams[0], beams[1], blocks[mark], crossing[0], away
+    index, lower = index_of(shell), beams[0]
+    here, there = index.stations[lower.mark, stud.mark], (p for p in lower.joints if p.joint in index.blocks)
+    normal, ahead = np.array(stud.frame.z), _tangent(lower, here)
+    for _, mark, at in sorted((abs(p.station - here), p.joint, p.station) for p in there):
+        crossing = [index.geodesics[member] for member in index.joints[mark].members if member in index.geodesics]
+        if crossing:
+            along = _tangent(crossing[0], index.stations[crossing[0].mark, mark])
+            if (at - here) * float(np.cross(along, normal) @ ahead) > 0.0:
+                return lower, beams[1], index.blocks[mark], crossing[0], at - here
     return None
 
 
-def _tangent(member: Member, joint: str) -> Floats:
-    station = next(place.station for place in member.joints if place.joint == joint)
+def _tangent(member: Member, station: float) -> Floats:
     return np.asarray(frames_at(member.curve, np.array([station])).tangent[0])
 
 
 def _middle_node(shell: Shell) -> _Node:
     """Return the node nearest to the middle of a shell that has a geodesic beside it; PlanError without one."""
-    joints = index_of(shell).joints
+    joints, stations = index_of(shell).joints, index_of(shell).stations
     studs = sorted(shell.studs, key=lambda stud: stud.mark)
     flat = shell_view(shell)(np.array([stud.frame.origin for stud in studs]).reshape(-1, 3))[:, :2]
     away = np.linalg.norm(flat - flat.mean(axis=0), axis=1).round(3) if len(studs) else flat
@@ -100,11 +98,11 @@ def _middle_node(shell: Shell) -> _Node:
             continue
         lower, upper, block, geodesic, distance = found
         normal = np.array(stud.frame.z)
-        ahead = _tangent(geodesic, block.mark)
+        ahead = _tangent(geodesic, stations[geodesic.mark, block.mark])
         y = unit(ahead - (ahead @ normal) * normal)
         axes = np.array([np.cross(y, normal), y, normal])
-        first = unit((axes @ _tangent(lower, stud.mark)) * [1.0, 1.0, 0.0])
-        second = unit((axes @ _tangent(upper, stud.mark)) * [1.0, 1.0, 0.0])
+        first = unit((axes @ _tangent(lower, stations[lower.mark, stud.mark])) * [1.0, 1.0, 0.0])
+        second = unit((axes @ _tangent(upper, stations[upper.mark, stud.mark])) * [1.0, 1.0, 0.0])
         x = axes @ np.array(stud.frame.x)
         return _Node(
             stud,

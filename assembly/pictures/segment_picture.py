@@ -12,7 +12,7 @@ from aag_cad.parts.mesh import frame_matrix
 from aag_cad.parts.model import Gridshell, Plank, Shell
 from aag_cad.units import Floats
 from assembly.base.segments import Brace, PlankPiece, Segment, Segmentation, Splice, splices_of
-from assembly.drawing.outline import Outline, shell_outline
+from assembly.drawing.outline import Outline, clipped, shell_outline
 from assembly.drawing.part_outlines import plank_rings
 from assembly.drawing.svg import (
     Box,
@@ -51,17 +51,8 @@ _SHARES = (0.96, 0.9, 0.04, 0.1, 0.84, 0.16, 0.7)
 
 def _part_of(outline: Outline, plank: Plank, piece: PlankPiece | None) -> Floats:
     """Return the outline (n, 2) of a plank, or of a piece of it."""
-    whole = outline.planks[plank.mark]
-    if piece is None:
-        return whole
-    count = len(whole) // 2
-    even = np.linspace(0.0, plank.blank.length, count)
-    at = np.unique([piece.start, piece.end, *even[(even > piece.start) & (even < piece.end)]])
-    sides = [
-        np.column_stack([np.interp(at, even, side[:, i]) for i in (0, 1)])
-        for side in (whole[:count], whole[: count - 1 : -1])
-    ]
-    return np.concatenate([sides[0], sides[1][::-1]])
+    whole, length = outline.planks[plank.mark], plank.blank.length
+    return clipped(whole, piece.start / length, piece.end / length) if piece else whole
 
 
 def _held(shell: Shell, segment: Segment) -> Iterator[tuple[Plank, PlankPiece | None]]:

@@ -3,15 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import is_in_shell, piece_mark, short_mark
 from aag_cad.parts.model import Shell
-from aag_cad.units import Floats
 from assembly.base.segments import Segment, Segmentation, Splice
 from assembly.base.steps import Plan, Step
-from assembly.drawing.outline import Outline
+from assembly.drawing.outline import Outline, clipped
 from assembly.pictures.named_marks import feet_of, numbers_of
 from assembly.pictures.step_pictures import Scene
 
@@ -31,18 +28,6 @@ def stood_segments(plan: Plan, segmentation: Segmentation | None) -> dict[str, t
         if step.phase == "stand":
             stood = (*stood, *(segment.name for segment in moved_segments(step, segmentation)))
     return found
-
-
-def _clipped(points: Floats, start: float, end: float) -> Floats:
-    """Return the part of an outline (2 k, 2) of a plank between two shares of its length."""
-    count = len(points) // 2
-    even = np.linspace(0.0, 1.0, count)
-    at = np.unique([start, end, *even[(even > start) & (even < end)]])
-    sides = [
-        np.column_stack([np.interp(at, even, side[:, i]) for i in (0, 1)])
-        for side in (points[:count], points[: count - 1 : -1])
-    ]
-    return np.concatenate([sides[0], sides[1][::-1]])
 
 
 def _own_planks(shell: Shell, segment: Segment) -> dict[str, tuple[str, float, float]]:
@@ -66,7 +51,7 @@ def cut_outline(outline: Outline, shell: Shell, segmentation: Segmentation) -> O
     pieces = {key: piece for segment in own for key, piece in _own_planks(shell, segment).items()}
     planks = index_of(shell).planks
     order = sorted(pieces, key=lambda key: (planks[pieces[key][0]].layer, key))
-    drawn = {key: _clipped(outline.planks[pieces[key][0]], *pieces[key][1:]) for key in order}
+    drawn = {key: clipped(outline.planks[pieces[key][0]], *pieces[key][1:]) for key in order}
     return replace(outline, planks=drawn)
 
 

@@ -42,7 +42,7 @@ def _beam_splice(shell: Shell, member: CutMember, place: CutPlace, line: str) ->
     limits, halves = bolt_distances(diameter, 0.0), _obstacles(shell)
     cuts, rooms = [], []
     for mark in member.planks:
-        at = next(on.station for on in planks[mark].joints if on.joint == place.joint)
+        at = index_of(shell).stations[mark, place.joint]
         kept = tuple(hole for hole in planks[mark].blank.holes if hole.joint != place.joint)
         cuts.append(PlankCut(mark, at, _clear(kept, at)))
         rooms += [abs(hole.station - at) - halves.get(hole.joint, 0.0) - PLAY for hole in kept]
