@@ -48,6 +48,11 @@ def joined_ranges(marks: Sequence[str]) -> str:
     return ", ".join(mark_ranges(marks))
 
 
+def short_in(mark: str, shell: str) -> str:
+    """Return a mark as it stands on a card of a shell: without the shell's own in front, and all others whole."""
+    return mark.removeprefix(f"{shell}-") if shell else mark
+
+
 def named_marks(marks: Sequence[str]) -> str:
     """Return marks as one text: in ranges if they are those of a gridshell, and else as they are."""
     try:

@@ -23,14 +23,19 @@ class Slide:
     """A unit that is slid in when the others lie: with its other end first, from beyond ``end``.
 
     ``free`` is the length of open floor beyond that end (infinite if nothing lies there), ``radius`` the smallest to
-    which it bends, mm (infinite if it stays straight); ``joints`` are those in the order that it passes them.
+    which it bends, mm (infinite if it stays straight); ``passed`` are the crossings in the order that it passes them.
     """
 
     unit: str
     end: End
     free: float
-    joints: tuple[str, ...]
+    passed: tuple[Overlap, ...]
     radius: float = math.inf
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints in the order that it passes them."""
+        return tuple(dict.fromkeys(at.joint for at in self.passed))
 
 
 @dataclass(frozen=True)
@@ -65,13 +70,12 @@ def _precedence(lying: "nx.DiGraph[str]", slides: Iterable[str], left_out: Colle
 
 
 def _slide(sliding: Sliding, overlaps: Iterable[Overlap], in_place: Collection[str]) -> Slide:
-    passed = sorted(
-        (at.upper_mm, at.joint) if at.upper == sliding.unit else (at.lower_mm, at.joint)
-        for at in overlaps
-        if sliding.unit in (at.lower, at.upper) and {at.lower, at.upper} - {sliding.unit} <= set(in_place)
-    )
-    joints = dict.fromkeys(joint for _, joint in (passed[::-1] if sliding.end == "end" else passed))
-    return Slide(sliding.unit, sliding.end, sliding.free, tuple(joints), sliding.radius)
+    def place(at: Overlap) -> tuple[float, str]:
+        return at.upper_mm if at.upper == sliding.unit else at.lower_mm, at.joint
+
+    passed = [at for at in overlaps if {at.lower, at.upper} - {sliding.unit} <= set(in_place)]
+    passed.sort(key=place, reverse=sliding.end == "end")
+    return Slide(sliding.unit, sliding.end, sliding.free, tuple(passed), sliding.radius)
 
 
 def _slides(

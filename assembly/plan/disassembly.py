@@ -25,10 +25,10 @@ from assembly.laying.order import FlatOrder, flat_orders, groups_of
 from assembly.plan.parting import splice_extras
 from assembly.plan.piece_weights import piece_weights
 from assembly.plan.shape_control import prop_points
-from assembly.plan.shell_work import BEAMS_A_STEP, LAID_A_STEP
+from assembly.plan.shell_work import BEAMS_A_STEP
 from assembly.plan.site_work import ridge_pairs
 from assembly.plan.step_cards import spanners
-from assembly.plan.work import EVERYONE, PAIR, Work, all_of, props_under, steps_from
+from assembly.plan.work import EVERYONE, LAID_A_STEP, PAIR, Work, all_of, props_under, steps_from
 
 _PAIRS_A_STEP = 4
 _GRAVITY = 9.81

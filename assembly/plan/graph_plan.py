@@ -1,29 +1,26 @@
 """The plan of laying and joining any graph of parts and joints on the floor (``assembly.graph.faults``)."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
 
 import networkx as nx
 
-from aag_cad.errors import MarkError
 from aag_cad.findings import Finding
 from aag_cad.language import Figure, Text, text
-from aag_cad.parts.marks import short_mark
 from assembly.base.errors import PlanError
 from assembly.base.lifters import lifters_of, lifting_findings
-from assembly.base.mark_ranges import named_marks
+from assembly.base.mark_ranges import named_marks, short_in
 from assembly.base.phases import Phase
 from assembly.base.steps import Plan
-from assembly.graph.interlacing import Interlacing, Slide, interlacing
-from assembly.graph.laying_units import Overlap, Unit, units_of
+from assembly.graph.interlacing import Interlacing, interlacing
+from assembly.graph.laying_units import Unit, units_of
 from assembly.graph.whole import whole_graph
 from assembly.laying.joining import Joining, joinings
 from assembly.laying.order import FlatOrder, flat_order_of, groups_of
-from assembly.plan.work import PAIR, Work, steps_from
+from assembly.plan.slide_work import slide_title, told_slide
+from assembly.plan.work import LAID_A_STEP, PAIR, Work, steps_from
 
-LAID_A_STEP = 7
 JOINTS_A_STEP = 24
 _FEW = 4
 
@@ -38,23 +35,15 @@ class _Basis:
     woven: Interlacing
     order: FlatOrder
 
-    def work(self, name: str, phase: Phase, shell: str, title: Text, marks: tuple[str, ...], least: int = 1) -> Work:
+    def work(self, name: str, phase: Phase, shell: str, title: Text, marks: tuple[str, ...]) -> Work:
         """Return a piece of work that as yet waits for nothing."""
         name = f"{shell}.{name}" if shell else name
-        return Work(name, phase, title, text(f"graph.plan.{phase}"), shell, marks=marks, least_crew=least)
+        return Work(name, phase, title, text(f"phases.{phase}"), shell, marks=marks)
 
 
 def _says(key: str, **figures: Figure) -> Text:
     """Return a text of the table ``plan`` in ``words/graph.toml``."""
     return text(f"graph.plan.{key}", **figures)
-
-
-def _short(mark: str) -> str:
-    """Return a mark without its shell if it is one of ours, and any other as it is."""
-    try:
-        return short_mark(mark)
-    except MarkError:
-        return mark
 
 
 def _kits(graph: "nx.MultiGraph[str]", units: Mapping[str, Unit]) -> dict[str, tuple[str, ...]]:
@@ -93,53 +82,30 @@ def _laying(basis: _Basis, steps: dict[str, str]) -> Iterator[Work]:
             assemblies=tuple(unit for unit in group if unit not in basis.graph),
             after=tuple(dict.fromkeys(steps[unit] for unit in below if unit in steps)),
             notes=(
-                _says("lay.stack", stack=stack, marks=tuple(map(_short, group))),
+                _says("lay.stack", stack=stack, marks=tuple(short_in(mark, first.shell) for mark in group)),
                 _says("lay.over", below=onto) if below else _says("lay.floor"),
-                _says("lay.loose"),
             ),
         )
-
-
-def _passed(slide: Slide, overlaps: Iterable[Overlap]) -> tuple[Text, ...]:
-    """Return the crossings of a slide in their order, and whether it lies over or under at each."""
-    turn = {joint: i for i, joint in enumerate(slide.joints)}
-    listed = sorted((turn[at.joint], at.lower, at.upper, at.joint) for at in overlaps if at.joint in turn)
-    texts = []
-    for _, lower, upper, joint in listed:
-        side, other = ("over", lower) if upper == slide.unit else ("under", upper)
-        texts.append(_says(f"slide.{side}", joint=_short(joint), other=_short(other)))
-    return tuple(texts)
 
 
 def _sliding(basis: _Basis, steps: dict[str, str]) -> Iterator[Work]:
     """Yield the slides, one step each."""
     counts: dict[str, int] = defaultdict(int)
-    at_unit: dict[str, list[Overlap]] = defaultdict(list)
-    for overlap in basis.woven.overlaps:
-        at_unit[overlap.lower].append(overlap)
-        at_unit[overlap.upper].append(overlap)
     for slide in basis.order.slides:
         unit = basis.units[slide.unit]
         counts[unit.shell] += 1
-        title = _says("slide.title", marks=named_marks((unit.mark,)))
-        work = basis.work(f"slide.{counts[unit.shell]}", "slide", unit.shell, title, basis.kits[unit.mark], PAIR)
+        name, marks = f"slide.{counts[unit.shell]}", basis.kits[unit.mark]
+        work = told_slide(basis.work(name, "slide", unit.shell, slide_title(slide), marks), slide, unit.length)
         before = sorted(basis.woven.precedence.predecessors(unit.mark))
-        free = _says("slide.free", free=slide.free) if isfinite(slide.free) else _says("slide.open")
         steps[unit.mark] = work.id
         yield replace(
             work,
             assemblies=(unit.mark,) if unit.mark not in basis.graph else (),
             after=tuple(dict.fromkeys(steps[other] for other in before if other in steps)),
-            notes=(
-                _says("slide.place", end=_says(f"slide.{slide.end}"), needed=unit.length, free=free),
-                _says("slide.way", crossings=_passed(slide, at_unit[unit.mark])),
-                _says("slide.lift"),
-            ),
         )
 
 
-def _joined(group: Sequence[Joining]) -> Figure:
-    names = tuple(_short(joining.joint) for joining in group)
+def _joined(names: tuple[str, ...]) -> Figure:
     return names if len(names) <= _FEW else _says("several", count=len(names), first=names[0], last=names[-1])
 
 
@@ -162,18 +128,18 @@ def _joining(basis: _Basis, found: Sequence[Joining], steps: dict[str, str]) -> 
         for group in groups_of(run, JOINTS_A_STEP):
             counts[shell] += 1
             marks = tuple(mark for joining in group for mark in joining.marks)
-            work = basis.work(
-                f"join.{counts[shell]}", "join", shell, _says("join.title", joints=_joined(group)), marks, PAIR
-            )
+            order = tuple(short_in(joining.joint, shell) for joining in group)
+            title = _says("join.title", joints=_joined(order))
+            work = basis.work(f"join.{counts[shell]}", "join", shell, title, marks)
             tied = sorted({other for mark in marks for other in basis.graph[mark]} - set(marks))
             units = dict.fromkeys(home[other] for other in tied if other in home)
             waits = [*units, *(unit for other in units for unit in past[other]), *(o for o in tied if o not in home)]
             steps |= dict.fromkeys(marks, work.id)
-            order = tuple(_short(joining.joint) for joining in group)
             yield replace(
                 work,
+                least_crew=PAIR,
                 after=tuple(sorted({steps[other] for other in waits if other in steps} - {work.id})),
-                notes=(_says("join.order", joints=order), _says("join.how")),
+                notes=(_says("join.order", joints=order),),
             )
 
 

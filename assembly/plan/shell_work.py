@@ -6,7 +6,6 @@ from itertools import chain, groupby
 
 from aag_cad.language import Text, text
 from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import short_mark
 from aag_cad.parts.model import Gridshell, Shell
 from assembly.base.locking_order import LockingOrder, LockingStep
 from assembly.base.mark_ranges import joined_ranges
@@ -14,11 +13,11 @@ from assembly.base.part_groups import Kit, shell_kit
 from assembly.base.phases import Phase
 from assembly.base.steps import StepProp
 from assembly.laying.order import FlatOrder, groups_of, row_groups
+from assembly.plan.slide_work import slide_title, told_slide
 from assembly.plan.step_cards import Fasteners, card, fasteners_by_kind
-from assembly.plan.work import EVERYONE, PAIR, Work, all_of, props_under
+from assembly.plan.work import EVERYONE, LAID_A_STEP, PAIR, Work, all_of, props_under
 
 BEAMS_A_STEP = 4
-LAID_A_STEP = 7
 STUDS_A_STEP = 24
 PAIRS_A_STEP = 2
 
@@ -74,17 +73,8 @@ def _sliding(basis: _Basis, laid: str) -> Iterator[Work]:
     """Yield the sliding in of planks that are woven between others, one after the other."""
     planks = index_of(basis.shell).planks
     for i, slide in enumerate(basis.order.slides, start=1):
-        way = text(
-            "steps.slide.way",
-            unit=short_mark(slide.unit),
-            end=text(f"steps.slide.{slide.end}"),
-            count=len(slide.joints),
-            joints=", ".join(short_mark(joint) for joint in slide.joints),
-            needed=planks[slide.unit].blank.length,
-            free=text("steps.slide.open") if slide.free == float("inf") else f"{slide.free:.0f} mm",
-        )
-        work = basis.work(f"slide.{i}", "slide", text("steps.slide.title", marks=joined_ranges((slide.unit,))))
-        yield replace(work, after=(laid,), marks=(slide.unit,), least_crew=PAIR, notes=(way,))
+        work = told_slide(basis.work(f"slide.{i}", "slide", slide_title(slide)), slide, planks[slide.unit].blank.length)
+        yield replace(work, after=(laid,), marks=(slide.unit,))
         laid = work.id
 
 

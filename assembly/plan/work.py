@@ -11,6 +11,7 @@ from assembly.base.steps import Extra, Step, StepProp, carried
 
 PAIR = 2
 EVERYONE = 1000
+LAID_A_STEP = 7
 
 
 @dataclass(frozen=True)

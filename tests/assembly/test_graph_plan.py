@@ -26,8 +26,9 @@ from assembly.graph.files import graph_text, read_graph
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import interlacing
 from assembly.plan.durations import step_minutes
-from assembly.plan.graph_plan import JOINTS_A_STEP, LAID_A_STEP, graph_plan
+from assembly.plan.graph_plan import JOINTS_A_STEP, graph_plan
 from assembly.plan.schedule import people_curve, schedule_of
+from assembly.plan.work import LAID_A_STEP
 
 MINUTES = Minutes.model_validate({})
 

@@ -14,7 +14,7 @@ from aag_cad.parts.model import Gridshell
 from assembly.base.errors import PlanError
 from assembly.graph.files import graph_text, read_graph
 from assembly.graph.gridshell_graph import assembly_graph
-from assembly.graph.interlacing import Interlacing, Slide, interlacing, refuse_left_out
+from assembly.graph.interlacing import Interlacing, interlacing, refuse_left_out
 from assembly.graph.sliding import bend_radius, free_way
 
 
@@ -32,8 +32,10 @@ def test_what_is_said_of_a_crossing_counts_more_than_the_layers() -> None:
 def test_one_plank_of_four_round_a_square_is_slid_in() -> None:
     found = interlacing(graph_of(square(1700.0)))
     # R = 1000^2 / (4 x 24) = 10.4 m; both ends are free, so it comes in at its start, past its lower crossing first.
-    expected = Slide("Q1", "start", math.inf, ("J3", "J0"), 1000.0**2 / 96.0)
-    assert found.slides == (expected,)
+    (slide,) = found.slides
+    assert (slide.unit, slide.end, slide.free, slide.joints) == ("Q1", "start", math.inf, ("J3", "J0"))
+    assert slide.radius == 1000.0**2 / 96.0
+    assert [at.upper == "Q1" for at in slide.passed] == [False, True]
     assert not found.findings
 
 
