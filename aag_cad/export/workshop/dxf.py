@@ -96,7 +96,8 @@ def dxf_bytes(drawing: Drawing) -> bytes:
         document.header["$MEASUREMENT"] = 1
         for name, colour in LAYERS.items():
             document.layers.add(name, color=colour)
-        document.dimstyles.new(_STYLE, dxfattribs=_STYLE_OPTIONS)
+        if any(isinstance(item, Dimension) for item in drawing.items):
+            document.dimstyles.new(_STYLE, dxfattribs=_STYLE_OPTIONS)
         space = document.modelspace()
         for item in drawing.items:
             _add(space, item)
