@@ -78,7 +78,8 @@ def _colour_materials(tree: dict[str, Any]) -> None:
 def write_glb(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     """Write the gridshell for viewers and slides; FileError if the file cannot be written.
 
-    The meshes carry no normals: glTF asks viewers to shade such faces flat, which is what planks are.
+    The meshes carry no normals: glTF asks viewers to shade such faces flat, which is what planks are. Its colours are
+    linear intensities, which viewers turn into the sRGB codes of the legend.
     """
     scene = glb_scene(gridshell)
     data = scene.export(file_type="glb", include_normals=False, tree_postprocessor=_colour_materials)

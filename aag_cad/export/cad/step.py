@@ -31,8 +31,9 @@ def write_step(
     """Write the gridshell as STEP AP242 in mm, vault > shell > coupled beam > part; the same model gives equal bytes.
 
     Equal products are one product in the file, each placed under its mark. ``solids`` holds their shapes by product
-    key, as ``aag_cad.solids.products.product_solids`` gives them; they are built here if it is left out. SolidError
-    names the mark whose solid is invalid; FileError if the file cannot be written.
+    key, as ``aag_cad.solids.products.product_solids`` gives them; they are built here if it is left out. Colours stand
+    in ``COLOUR_RGB`` as sRGB numbers, which readers show as they are; the kernel itself reckons with linear ones.
+    SolidError names the mark whose solid is invalid; FileError if the file cannot be written.
     """
     shapes = product_solids(gridshell) if solids is None else solids
     with kernel_settings():
@@ -74,7 +75,6 @@ def _products(tools: _Tools, gridshell: Gridshell, solids: Mapping[str, TopoDS_S
         taken[name] += 1
         labels[key] = tools.shapes.AddShape(solids[key], False, False)
         named(labels[key], name if taken[name] == 1 else f"{name} ({taken[name]})")
-        # The kernel reckons with linear colours and writes COLOUR_RGB as sRGB numbers, which readers show as they are.
         tint = Quantity_Color(*colour(part), Quantity_TypeOfColor.Quantity_TOC_sRGB)
         tools.colours.SetColor(labels[key], tint, XCAFDoc_ColorType.XCAFDoc_ColorSurf)
     return {mark: labels[key] for mark, key in index.keys.items()}
