@@ -14,7 +14,7 @@ from typing import Annotated, Any, ParamSpec, cast
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
+from rich.table import Column, Table
 
 from aag_cad import __version__
 from aag_cad.errors import AagError, DesignError, FileError
@@ -80,9 +80,8 @@ def _progress(stages: int, quiet: bool) -> Iterator[Callable[[str], None]]:
 
 def _findings_table(findings: list[dict[str, Any]]) -> Table:
     """Return one row per kind of finding: how many, and the worst in full."""
-    table = Table(title="Findings", title_justify="left", show_lines=False)
-    for column in ("code", "severity", "count", "the furthest from what is allowed"):
-        table.add_column(column)
+    headers = ("code", "severity", "count", "the furthest from what is allowed")
+    table = Table(*headers, title="Findings", title_justify="left")
     kinds: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for finding in findings:
         kinds.setdefault((finding["severity"], finding["code"]), []).append(finding)
@@ -103,9 +102,7 @@ def _exit_on_errors(findings: list[dict[str, Any]], where: str) -> None:
 
 
 def _files_table(files: dict[str, int], folder: Path, summary: bool = True) -> Table:
-    table = Table(title=f"Files in {folder}", title_justify="left")
-    table.add_column("file")
-    table.add_column("kB", justify="right")
+    table = Table("file", Column("kB", justify="right"), title=f"Files in {folder}", title_justify="left")
     series: dict[tuple[str, str], list[str]] = {}
     for name in files:
         series.setdefault((str(Path(name).parent), Path(name).suffix), []).append(name)
@@ -130,6 +127,16 @@ def _key_figures(summary: dict[str, Any]) -> str:
         f"largest twist {figures['largest_twist_deg_per_m']:.1f} deg/m, "
         f"per shell {mass['all timber']:.0f} kg timber and {mass['all steel']:.0f} kg steel"
     )
+
+
+def _tell(as_json: bool, data: Any, *shown: str | Table) -> None:
+    """Print data as JSON and nothing else, or what is shown of it to people."""
+    if as_json:
+        print(json.dumps(data, indent=1, ensure_ascii=False))
+        return
+    console = Console()
+    for item in shown:
+        console.print(item, highlight=False)
 
 
 @app.command()
@@ -167,15 +174,9 @@ def build(
     folder = output or Path(read.project.name)
     with _progress(stages, as_json) as report:
         summary = run(read, folder, wanted, report, curves_from(curves) if curves else None, options, lang).summary
-    if as_json:
-        print(json.dumps(summary, indent=1, ensure_ascii=False))
-    else:
-        console = Console()
-        console.print(_key_figures(summary), highlight=False)
-        console.print(_findings_table(summary["findings"]))
-        console.print(_files_table(summary["files"], folder))
-        for name, remedy in left_out().items() if not wanted else ():
-            console.print(f"Left out: {name}; for it {remedy}", highlight=False)
+    left = [f"Left out: {name}; for it {remedy}" for name, remedy in left_out().items() if not wanted]
+    tables = _findings_table(summary["findings"]), _files_table(summary["files"], folder)
+    _tell(as_json, summary, _key_figures(summary), *tables, *left)
     _exit_on_errors(summary["findings"], design)
 
 
@@ -208,11 +209,7 @@ def check(
 
             found += file_faults(plan, gridshell, read.crew, limits_of(read.transport))
         findings = [finding_row(finding) for finding in worst_first(found)]
-    if as_json:
-        print(json.dumps(findings, indent=1, ensure_ascii=False))
-    else:
-        console = Console()
-        console.print(_findings_table(findings))
+    _tell(as_json, findings, _findings_table(findings))
     _exit_on_errors(findings, design)
 
 
@@ -260,24 +257,12 @@ def plan(
     if as_json:
         print(plan_json(result.file()), end="")
     else:
-        console = Console()
-        days = result.schedule.days
-        console.print(f"{len(result.plan.steps)} steps, {days:.1f} days for {read.crew.people}", highlight=False)
+        shown = [f"{len(result.plan.steps)} steps, {result.schedule.days:.1f} days for {read.crew.people}"]
         for order in result.locking[:1] if edges_first else ():
             price = f"{100.0 * order.rule_price:.0f} %"
-            console.print(f"Edge planks before geodesics cost {price} of the stiffness on the way", highlight=False)
-        console.print(_findings_table(findings))
-        console.print(_files_table(files, folder, summary=False))
+            shown.append(f"Edge planks before geodesics cost {price} of the stiffness on the way")
+        _tell(False, None, *shown, _findings_table(findings), _files_table(files, folder, summary=False))
     _exit_on_errors(findings, f"the plan of {source}")
-
-
-def _goals_for_mesh(node_angle: float | None, bottom_row: int | None, height: float | None, symmetric: bool) -> Any:
-    from aag_cad.web.goals import Goals
-
-    if node_angle is not None and not 0.0 < node_angle < 180.0:
-        raise DesignError(f"--node-angle: {node_angle:g}; allowed between 0 and 180 degrees")
-    angle = None if node_angle is None else math.radians(180.0 - node_angle)
-    return Goals(angle=angle, bottom_row=bottom_row, height=height, symmetric=symmetric)
 
 
 @app.command()
@@ -298,7 +283,9 @@ def optimise(
     as_json: AsJson = False,
 ) -> None:
     """Optimise a web to planar stars, geodesics and a constant angle; exit code 1 if the goals are not reached."""
+    from aag_cad.design import load_design
     from aag_cad.pipeline import optimised_design, optimised_mesh, write_optimised
+    from aag_cad.web.goals import Goals
 
     def progress(iteration: Any) -> None:
         if not as_json:
@@ -306,21 +293,18 @@ def optimise(
             print(f"{iteration.number:3d} {iteration.stage:<6} {energies}", file=sys.stderr)
 
     if source.lower().endswith(".obj"):
-        goals = _goals_for_mesh(node_angle, bottom_row, height, symmetric)
-        name, (found, goals) = Path(source).stem, (optimised_mesh(source, goals, progress), goals)
+        if node_angle is not None and not 0.0 < node_angle < 180.0:
+            raise DesignError(f"--node-angle: {node_angle:g}; allowed between 0 and 180 degrees")
+        angle = None if node_angle is None else math.radians(180.0 - node_angle)
+        goals = Goals(angle=angle, bottom_row=bottom_row, height=height, symmetric=symmetric)
+        name, found = Path(source).stem, optimised_mesh(source, goals, progress)
     else:
-        from aag_cad.design import load_design
-
         read = load_design(source)
         name, (found, goals) = read.project.name, optimised_design(read, progress)
     folder = output or Path(f"{name}-web")
     files = write_optimised(found, goals, folder)
-    if as_json:
-        print(json.dumps({"reason": found.reason, "explanation": found.explanation, "files": files}, indent=1))
-    else:
-        console = Console()
-        console.print(f"{found.reason}: {found.explanation}", highlight=False)
-        console.print(_files_table(files, folder, summary=False))
+    data = {"reason": found.reason, "explanation": found.explanation, "files": files}
+    _tell(as_json, data, f"{found.reason}: {found.explanation}", _files_table(files, folder, summary=False))
     if not found.success:
         print(f"aag: {source}: {found.reason}: {found.explanation}", file=sys.stderr)
         raise typer.Exit(1)

@@ -12,27 +12,33 @@ from aag_cad.errors import FileError
 
 
 @contextmanager
+def _writing(target: Path) -> Iterator[None]:
+    """Turn what the system has against writing a file or folder into FileError."""
+    try:
+        yield
+    except FileError:
+        raise
+    except OSError as error:
+        raise FileError(
+            f"{target}: cannot be written ({error.strerror or error}); choose a folder that you may write to, with "
+            "free space, and close the file in other programs"
+        ) from error
+
+
+@contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Yield a path in a temporary folder beside ``path``, then move what was written there to ``path``.
 
     Missing folders are made. If the block raises, ``path`` stays as it was; FileError if it cannot be written.
     """
     target = Path(path)
-    try:
+    with _writing(target):
         target.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".writing-", dir=target.parent) as folder:
             # The name is kept because some writers choose the format by it or print it in the header.
             draft = Path(folder) / target.name
             yield draft
             os.replace(draft, target)
-    except FileError:
-        raise
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise FileError(
-            f"{target}: cannot be written ({reason}); choose a folder that you may write to, with free space, "
-            "and close the file in other programs"
-        ) from error
 
 
 def sizes_below(folder: Path) -> dict[str, int]:
@@ -47,23 +53,17 @@ def publishing(folder: Path) -> Iterator[Path]:
 
     If the block raises, nothing is moved and nothing left behind; FileError if the folder cannot be written.
     """
-    try:
+    with _writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
         holder = tempfile.TemporaryDirectory(prefix=".aag-", dir=folder)
-    except OSError as error:
-        raise FileError(
-            f"{folder}: cannot be written: {error.strerror}; name a folder that is yours with -o"
-        ) from error
     with holder as name:
         staging = Path(name)
         yield staging
         for path in sizes_below(staging):
             target = folder / path
-            try:
+            with _writing(target):
                 target.parent.mkdir(parents=True, exist_ok=True)
                 os.replace(staging / path, target)
-            except OSError as error:
-                raise FileError(f"{target}: cannot be written: {error.strerror}") from error
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
