@@ -1,7 +1,9 @@
 """Boundary representations from numbers: vertices, edges, faces and solids by direct construction."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from typing import Any
 
+import numpy as np
 from OCP.BRep import BRep_Builder
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepClass3d import BRepClass3d_SolidClassifier
@@ -41,51 +43,63 @@ def direction(values: Floats) -> gp_Dir:
     return gp_Dir(*values.tolist())
 
 
+def _filled(array: Any, values: Iterable[Any]) -> Any:
+    """Return an array of the kernel, which counts from 1, with its values."""
+    for i, value in enumerate(values, 1):
+        array.SetValue(i, value)
+    return array
+
+
+def reals(values: Sequence[float]) -> TColStd_Array1OfReal:
+    """Return numbers as an array of the kernel."""
+    return _filled(TColStd_Array1OfReal(1, len(values)), values)
+
+
+def whole(values: Sequence[int]) -> TColStd_Array1OfInteger:
+    """Return whole numbers as an array of the kernel."""
+    return _filled(TColStd_Array1OfInteger(1, len(values)), values)
+
+
+def points_2d(values: Floats) -> TColgp_Array1OfPnt2d:
+    """Return points (n, 2) as an array of the kernel."""
+    return _filled(TColgp_Array1OfPnt2d(1, len(values)), (gp_Pnt2d(u, v) for u, v in values.tolist()))
+
+
 def knots_of(degree: int, padded: Floats) -> tuple[TColStd_Array1OfReal, TColStd_Array1OfInteger]:
     """Return the distinct knots and their multiplicities from the full knot vector of a clamped spline."""
-    inner = padded[degree + 1 : -degree - 1].tolist()
-    distinct = [float(padded[0]), *inner, float(padded[-1])]
-    knots = TColStd_Array1OfReal(1, len(distinct))
-    multiplicities = TColStd_Array1OfInteger(1, len(distinct))
-    for i, knot in enumerate(distinct, 1):
-        knots.SetValue(i, knot)
-        multiplicities.SetValue(i, degree + 1 if i in (1, len(distinct)) else 1)
-    return knots, multiplicities
+    knots = [float(padded[0]), *padded[degree + 1 : -degree - 1].tolist(), float(padded[-1])]
+    return reals(knots), whole([degree + 1, *[1] * (len(knots) - 2), degree + 1])
 
 
 def spline_curve(degree: int, padded: Floats, poles: Floats) -> Geom_BSplineCurve:
     """Return the clamped B-spline curve with the full knot vector and poles (n, 3)."""
-    array = TColgp_Array1OfPnt(1, len(poles))
-    for i, (x, y, z) in enumerate(poles.tolist(), 1):
-        array.SetValue(i, gp_Pnt(x, y, z))
+    array = _filled(TColgp_Array1OfPnt(1, len(poles)), map(point, poles))
     return Geom_BSplineCurve(array, *knots_of(degree, padded), degree)
+
+
+def spline_curve_2d(degree: int, padded: Floats, poles: Floats) -> Geom2d_BSplineCurve:
+    """Return the clamped B-spline curve in a parameter plane with the full knot vector and poles (n, 2)."""
+    return Geom2d_BSplineCurve(points_2d(poles), *knots_of(degree, padded), degree)
+
+
+def spline_surface(degrees: tuple[int, int], padded: tuple[Floats, Floats], poles: Floats) -> Geom_BSplineSurface:
+    """Return the clamped B-spline surface with the full knot vectors of both directions and poles (n, m, 3)."""
+    array = TColgp_Array2OfPnt(1, len(poles), 1, poles.shape[1])
+    for (i, j), pole in zip(np.ndindex(poles.shape[:2]), poles.reshape(-1, 3), strict=True):
+        array.SetValue(i + 1, j + 1, point(pole))
+    (u, u_times), (v, v_times) = (knots_of(*each) for each in zip(degrees, padded, strict=True))
+    return Geom_BSplineSurface(array, u, v, u_times, v_times, *degrees)
 
 
 def ruled_surface(degree: int, padded: Floats, first: Floats, second: Floats, width: float) -> Geom_BSplineSurface:
     """Return the ruled B-spline surface from one row of poles (n, 3) at v = 0 to another at v = width."""
-    array = TColgp_Array2OfPnt(1, len(first), 1, 2)
-    for column, poles in enumerate((first, second), 1):
-        for i, (x, y, z) in enumerate(poles.tolist(), 1):
-            array.SetValue(i, column, gp_Pnt(x, y, z))
-    across = TColStd_Array1OfReal(1, 2)
-    across.SetValue(1, 0.0)
-    across.SetValue(2, width)
-    double = TColStd_Array1OfInteger(1, 2)
-    double.Init(2)
-    knots, multiplicities = knots_of(degree, padded)
-    return Geom_BSplineSurface(array, knots, across, multiplicities, double, degree, 1)
+    across = np.array([0.0, 0.0, width, width])
+    return spline_surface((degree, 1), (padded, across), np.stack([first, second], axis=1))
 
 
 def closed_curve_2d(knots: Floats, poles: Floats) -> Geom2d_BSplineCurve:
     """Return the periodic quintic B-spline in the parameter plane with single knots (n + 1,) and poles (n, 2)."""
-    array = TColgp_Array1OfPnt2d(1, len(poles))
-    for i, (u, v) in enumerate(poles.tolist(), 1):
-        array.SetValue(i, gp_Pnt2d(u, v))
-    places, single = TColStd_Array1OfReal(1, len(knots)), TColStd_Array1OfInteger(1, len(knots))
-    single.Init(1)
-    for i, knot in enumerate(knots.tolist(), 1):
-        places.SetValue(i, knot)
-    return Geom2d_BSplineCurve(array, places, single, 5, True)
+    return Geom2d_BSplineCurve(points_2d(poles), reals(knots.tolist()), whole([1] * len(knots)), 5, True)
 
 
 def line_2d(u: float, v: float, du: float, dv: float) -> Geom2d_Line:

@@ -5,9 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from OCP.Geom import Geom_BSplineSurface
-from OCP.Geom2d import Geom2d_BSplineCurve
-from OCP.gp import gp_Pnt2d
-from OCP.TColgp import TColgp_Array1OfPnt2d
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Solid, TopoDS_Vertex
 from scipy.interpolate import BSpline, make_interp_spline
 
@@ -101,13 +98,6 @@ def _corners(skin: _Skin, cut: Sequence[float]) -> list[_Corner]:
     return corners
 
 
-def _curve_2d(spline: BSpline) -> Geom2d_BSplineCurve:
-    poles = TColgp_Array1OfPnt2d(1, len(spline.c))
-    for i, (x, y) in enumerate(np.asarray(spline.c).tolist(), 1):
-        poles.SetValue(i, gp_Pnt2d(x, y))
-    return Geom2d_BSplineCurve(poles, *brep.knots_of(_DEGREE, spline.t), _DEGREE)
-
-
 def _cut(
     skin: _Skin, flat: Floats, corners: tuple[_Corner, _Corner], upper: bool
 ) -> tuple[list[TopoDS_Edge], TopoDS_Face]:
@@ -124,7 +114,7 @@ def _cut(
         start, end = corners[0].vertices[face], corners[1].vertices[face]
         edge = brep.edge(brep.spline_curve(_DEGREE, spline.t, spline.c), 0.0, length, start, end)
         parameters = make_interp_spline(t * length, np.column_stack([u * skin.length, skin.across(face, v)]), k=_DEGREE)
-        brep.lay_on(edge, skin.wide[face], _curve_2d(parameters))
+        brep.lay_on(edge, skin.wide[face], brep.spline_curve_2d(_DEGREE, parameters.t, parameters.c))
         brep.lay_on(edge, surface, brep.line_2d(0.0, 0.0 if face == first else skin.sheet.thickness, 1.0, 0.0))
         edges.append(edge)
     start, way = (0.0, 1.0) if upper else (skin.sheet.thickness, -1.0)

@@ -2,13 +2,8 @@
 
 import os
 
-import numpy as np
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
-from OCP.Geom import Geom_BSplineCurve, Geom_BSplineSurface
-from OCP.gp import gp_Pnt
-from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt
 from OCP.TCollection import TCollection_ExtendedString
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
@@ -20,7 +15,7 @@ from aag_cad.files import write_bytes
 from aag_cad.network.model import CurveNetwork, NetworkCurve
 from aag_cad.parts.marks import short_mark
 from aag_cad.parts.members import curve_mark
-from aag_cad.units import Floats
+from aag_cad.solids import brep
 from aag_cad.web.interpolation import InterpolatedSurface
 
 _TOLERANCE = 1e-6
@@ -45,35 +40,14 @@ def write_step_curves(
 def curve_edge(item: NetworkCurve) -> TopoDS_Edge:
     """Return the part of a network curve that its plank lies on."""
     spline = item.curve.point_spline
-    poles = TColgp_Array1OfPnt(1, len(spline.c))
-    for i, point in enumerate(np.asarray(spline.c, dtype=np.float64).tolist(), start=1):
-        poles.SetValue(i, gp_Pnt(*point))
-    knots, times = _knots(spline.t)
-    curve = Geom_BSplineCurve(poles, knots, times, spline.k)
+    curve = brep.spline_curve(spline.k, spline.t, spline.c)
     return BRepBuilderAPI_MakeEdge(curve, item.start, item.end).Edge()
 
 
 def surface_face(surface: InterpolatedSurface) -> TopoDS_Face:
     """Return the whole interpolated surface as one face."""
-    rows, columns = surface.control.shape[:2]
-    poles = TColgp_Array2OfPnt(1, rows, 1, columns)
-    for i, row in enumerate(surface.control.tolist(), start=1):
-        for j, point in enumerate(row, start=1):
-            poles.SetValue(i, j, gp_Pnt(*point))
-    (u, u_times), (v, v_times) = (_knots(knots) for knots in surface.knots)
-    return BRepBuilderAPI_MakeFace(
-        Geom_BSplineSurface(poles, u, v, u_times, v_times, surface.degrees[0], surface.degrees[1]), _TOLERANCE
-    ).Face()
-
-
-def _knots(knots: Floats) -> tuple[TColStd_Array1OfReal, TColStd_Array1OfInteger]:
-    """Return distinct knots and their multiplicities, as the kernel keeps them."""
-    distinct, counts = np.unique(knots, return_counts=True)
-    values, times = TColStd_Array1OfReal(1, len(distinct)), TColStd_Array1OfInteger(1, len(distinct))
-    for i, (knot, count) in enumerate(zip(distinct.tolist(), counts.tolist(), strict=True), start=1):
-        values.SetValue(i, knot)
-        times.SetValue(i, count)
-    return values, times
+    made = brep.spline_surface(surface.degrees, surface.knots, surface.control)
+    return BRepBuilderAPI_MakeFace(made, _TOLERANCE).Face()
 
 
 def _document(network: CurveNetwork, surface: InterpolatedSurface | None) -> TDocStd_Document:
