@@ -116,9 +116,7 @@ def flat_pair(shell: Shell, pair: CoupledPair, timber: Timber) -> FlatPair:
     timbers: tuple[Part, ...] = (*shell.planks, *shell.studs, *shell.blocks)
     parts = [part for part in timbers if part.mark in wanted]
     weight = GRAVITY * sum(mass(part, timber) for part in parts)
-    width = next(plank.blank.section.width for plank in shell.planks if plank.mark in pair.beam.planks)
-    inertia = width * pair.thickness**3 / 12.0
-    length = pair.beam.curve.length
+    inertia, length = pair.section.width * pair.section.thickness**3 / 12.0, pair.beam.curve.length
     return FlatPair(length, weight / length, 2.0 * timber.modulus * inertia)
 
 

@@ -18,6 +18,7 @@ from aag_cad.errors import NetworkError
 from aag_cad.geometry.framed import curvatures_at, frames_at, nearest_station
 from aag_cad.geometry.surface import dot
 from aag_cad.parts.forming import formed_points, plank_axes
+from aag_cad.parts.forms import CrossSection
 from aag_cad.parts.model import Beam, FlatBar
 from aag_cad.units import Floats, Ints
 
@@ -34,7 +35,7 @@ class CoupledPair:
     """The couplings of a beam in order: joints (m), where they sit on its curve and on both blanks; mm.
 
     ``left`` and ``right`` (m,) are the stations of the bolts on the planks' centre lines, ``holes`` (m,) how many bolt
-    holes each plank has there, ``spacing`` the distance s of the planks' middle planes.
+    holes each plank has there, ``spacing`` the distance s of the planks' middle planes, ``section`` that of each plank.
     """
 
     beam: Beam
@@ -44,7 +45,12 @@ class CoupledPair:
     right: Floats
     holes: Ints
     spacing: float
-    thickness: float
+    section: CrossSection
+
+    @property
+    def recovered(self) -> float:
+        """The share of the drilled curvature that it keeps when it is released."""
+        return recovered_share(self.spacing, self.section.thickness)
 
 
 @dataclass(frozen=True)
@@ -124,7 +130,7 @@ def coupled_pair(beam: Beam, left: FlatBar, right: FlatBar) -> CoupledPair:
         right=np.array([on_right[j][1] for j in joints]),
         holes=np.array([on_left[j][2] for j in joints]),
         spacing=float(np.linalg.norm(gap)),
-        thickness=left.blank.section.thickness,
+        section=left.blank.section,
     )
 
 
@@ -187,8 +193,7 @@ def _samples(pair: CoupledPair) -> Floats:
 
 def _sprung_angle(pair: CoupledPair, right_minus_left: Floats, samples: Floats) -> Floats:
     """Return the tangent's angle (n,) at samples (n,) of the released pair: it turns evenly within each bay."""
-    share = recovered_share(pair.spacing, pair.thickness)
-    at_joints = share * (right_minus_left - right_minus_left[0]) / pair.spacing
+    at_joints = pair.recovered * (right_minus_left - right_minus_left[0]) / pair.spacing
     return np.asarray(np.interp(samples, pair.stations, at_joints))
 
 
@@ -204,35 +209,27 @@ def target_curve(pair: CoupledPair) -> PlaneCurve:
     return plane_curve(np.concatenate([[0.0], np.cumsum(geodesic_turn(pair.beam, samples))]), samples)
 
 
-def over_drilled(pair: CoupledPair) -> tuple[Floats, Floats]:
-    """Return the stations (m,) on the left and right blank that spring to the target curve itself, mm.
-
-    The difference between the siblings grows by the reciprocal of the recovered share (28/27), half on each plank, so
-    that the middle of both stays where it is.
-    """
-    shift = over_drill_shift(pair)
-    return pair.left - shift, pair.right + shift
-
-
 def over_drill_shift(pair: CoupledPair) -> Floats:
-    """Return how far (m,) each joint's holes move on the right plank, and back on the left, to be over-drilled, mm."""
-    share = recovered_share(pair.spacing, pair.thickness)
-    return (pair.right - pair.left) * (1.0 / share - 1.0) / 2.0
+    """Return how far (m,) each joint's holes move on the right plank, and back on the left, to be over-drilled, mm.
+
+    So drilled the pair springs to the target curve itself: the difference between the siblings grows by the reciprocal
+    of the recovered share (28/27), half on each plank, so that the middle of both stays where it is.
+    """
+    return (pair.right - pair.left) * (1.0 / pair.recovered - 1.0) / 2.0
 
 
-def sprung_shape(pair: CoupledPair, left: Floats, right: Floats, modulus: float, width: float) -> SprungShape:
+def sprung_shape(pair: CoupledPair, left: Floats, right: Floats, modulus: float) -> SprungShape:
     """Return the shape of a released pair drilled at stations left and right (m,) against its target curve.
 
-    ``modulus`` in N/mm2 and ``width`` of the planks in mm give the locked-in force E A s (kappa_0 - kappa) / 2.
+    ``modulus`` in N/mm2 gives the locked-in force E A s (kappa_0 - kappa) / 2.
     """
     curve, target = sprung_curve(pair, left, right), target_curve(pair)
-    lost = 1.0 - recovered_share(pair.spacing, pair.thickness)
-    strain = lost * np.abs(np.diff(right - left) / np.diff(pair.stations)) / 2.0
+    strain = (1.0 - pair.recovered) * np.abs(np.diff(right - left) / np.diff(pair.stations)) / 2.0
     return SprungShape(
         target_sagitta=largest_sagitta(target),
         sagitta=largest_sagitta(curve),
         fitted=fitted_deviation(curve, target),
-        force=float(modulus * width * pair.thickness * strain.max()),
+        force=float(modulus * pair.section.width * pair.section.thickness * strain.max()),
     )
 
 
@@ -244,11 +241,11 @@ def hole_error_effect(pair: CoupledPair, error: float = HOLE_ERROR) -> HoleError
     """
     samples = _samples(pair)
     angle = _sprung_angle(pair, pair.right - pair.left, samples)
-    curve, share = plane_curve(angle, samples), recovered_share(pair.spacing, pair.thickness)
+    curve = plane_curve(angle, samples)
     joint_error = error * np.sqrt(2.0 / pair.holes)
     hats = np.array([np.interp(samples, pair.stations, row) for row in np.eye(len(pair.joints))])
     hats[0] -= 1.0
-    rate = 1j * np.exp(1j * angle) * hats * share / pair.spacing
+    rate = 1j * np.exp(1j * angle) * hats * pair.recovered / pair.spacing
     steps = (rate[:, 1:] + rate[:, :-1]) / 2.0 * np.diff(samples)
     moved = np.concatenate([np.zeros((len(hats), 1)), np.cumsum(steps, axis=1)], axis=1)
     middle, end = moved[:, len(samples) // 2], moved[:, -1]
@@ -257,15 +254,10 @@ def hole_error_effect(pair: CoupledPair, error: float = HOLE_ERROR) -> HoleError
     foot = (curve[len(samples) // 2] * np.conj(along)).real / abs(chord)
     rise = ((middle - foot * end) * np.conj(along)).imag
     across = (end * np.exp(-1j * angle[-1])).imag
+    nodes, bays = node_indices(pair), node_differences(pair)
+    bay_errors = np.hypot(joint_error[nodes[1:]], joint_error[nodes[:-1]])
     return HoleErrorEffect(
         middle=float(np.linalg.norm(rise * joint_error)),
         end=float(np.linalg.norm(across * joint_error)),
-        curvature=_curvature_error(pair, joint_error),
+        curvature=float(np.linalg.norm(bay_errors) / np.linalg.norm(bays)) if bays.any() else math.inf,
     )
-
-
-def _curvature_error(pair: CoupledPair, joint_error: Floats) -> float:
-    nodes = node_indices(pair)
-    bays = node_differences(pair)
-    errors = np.hypot(joint_error[nodes[1:]], joint_error[nodes[:-1]])
-    return float(np.linalg.norm(errors) / np.linalg.norm(bays)) if bays.any() else math.inf

@@ -69,6 +69,12 @@ def round_polygon(diameter: float) -> Floats:
     return regular_polygon(_ROUND_SIDES, 2.0 * math.sqrt(area / (_ROUND_SIDES * math.tan(math.pi / _ROUND_SIDES))))
 
 
+def polygon_area(corners: Floats) -> float:
+    """Return the area inside a plane polygon (n, 2), mm2."""
+    (x, y), (u, v) = corners.T, np.roll(corners, -1, axis=0).T
+    return abs(float(np.sum(x * v - u * y))) / 2.0
+
+
 def hexagon_area(across_flats: float) -> float:
     """Return the area of a regular hexagon, mm2."""
     return math.sqrt(3.0) / 2.0 * across_flats**2

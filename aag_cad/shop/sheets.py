@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from scipy.optimize import LinearConstraint
 
+from aag_cad.parts.triangles import polygon_area
 from aag_cad.shop.stock import Piece, StockRules, cutting_plan, times_cut
 from aag_cad.units import Floats
 
@@ -240,12 +241,6 @@ def _placed(plan: Iterable[tuple[Bay, ...]], bays: Mapping[Bay, _Fit], kinds: Se
     return sheets
 
 
-def area(outline: Floats) -> float:
-    """Return the area inside an outline (n, 2), mm2."""
-    after = np.roll(outline, -1, axis=0)
-    return abs(float((outline[:, 0] * after[:, 1] - after[:, 0] * outline[:, 1]).sum())) / 2.0
-
-
 def sheet_plan(strips: Iterable[tuple[str, Floats]], rules: SheetRules) -> SheetPlan:
     """Return the sheets for strips, given by mark and outline (n, 2) in mm with x along the ribs.
 
@@ -277,7 +272,7 @@ def sheet_plan(strips: Iterable[tuple[str, Floats]], rules: SheetRules) -> Sheet
     return SheetPlan(
         tuple(_placed(plan, bays, kinds, originals, rules)),
         rules.width,
-        math.fsum(area(outline) for outline in originals.values()),
+        math.fsum(polygon_area(outline) for outline in originals.values()),
         bound,
         usual.first_fit_decreasing,
         refused,

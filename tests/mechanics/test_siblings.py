@@ -22,7 +22,6 @@ from aag_cad.mechanics.siblings import (
     node_differences,
     node_indices,
     over_drill_shift,
-    over_drilled,
     plane_curve,
     recovered_share,
     sprung_curve,
@@ -168,8 +167,9 @@ def test_a_plane_curve_of_even_turn_is_an_arc_with_its_sagitta() -> None:
 def test_a_released_pair_is_flatter_by_a_28th_and_over_drilling_mends_it(pairs: dict[str, CoupledPair]) -> None:
     """The sagitta loses about 1/28; over-drilled, what is left comes from bays that bend evenly: under 0.6 mm."""
     for pair in pairs.values():
-        shape = sprung_shape(pair, pair.left, pair.right, MODULUS, WIDTH)
-        better = sprung_shape(pair, *over_drilled(pair), MODULUS, WIDTH)
+        shape = sprung_shape(pair, pair.left, pair.right, MODULUS)
+        shift = over_drill_shift(pair)
+        better = sprung_shape(pair, pair.left - shift, pair.right + shift, MODULUS)
         assert shape.sagitta / shape.target_sagitta == pytest.approx(27.0 / 28.0, abs=5e-3)
         assert better.sagitta == pytest.approx(shape.target_sagitta, rel=5e-3)
         assert better.fitted < 0.6
@@ -178,7 +178,7 @@ def test_a_released_pair_is_flatter_by_a_28th_and_over_drilling_mends_it(pairs: 
 
 def test_the_longest_beam_leaves_its_curve_by_16_mm_as_drilled(pairs: dict[str, CoupledPair]) -> None:
     """A2-07: a sagitta of 586 mm; a locked-in force E A s kappa / 56 of 1.3 kN in each plank."""
-    shape = sprung_shape(pairs["S1-A2-07"], pairs["S1-A2-07"].left, pairs["S1-A2-07"].right, MODULUS, WIDTH)
+    shape = sprung_shape(pairs["S1-A2-07"], pairs["S1-A2-07"].left, pairs["S1-A2-07"].right, MODULUS)
     assert shape.target_sagitta == pytest.approx(586.0, abs=1.0)
     assert shape.fitted == pytest.approx(15.7, abs=0.1)
     pair = pairs["S1-A2-07"]
@@ -190,7 +190,7 @@ def test_the_longest_beam_leaves_its_curve_by_16_mm_as_drilled(pairs: dict[str, 
 
 def test_over_drilling_moves_no_hole_by_half_a_millimetre_and_keeps_the_middle(pairs: dict[str, CoupledPair]) -> None:
     for pair in pairs.values():
-        left, right = over_drilled(pair)
+        left, right = pair.left - over_drill_shift(pair), pair.right + over_drill_shift(pair)
         assert np.diff(right - left) == pytest.approx(np.diff(pair.right - pair.left) * 28.0 / 27.0, rel=1e-9)
         assert left + right == pytest.approx(pair.left + pair.right, rel=1e-15)
         assert np.abs(over_drill_shift(pair)).max() < 0.5
@@ -211,7 +211,7 @@ def test_hole_errors_move_the_shape_as_the_linear_propagation_says(pairs: dict[s
     """2 000 pairs drilled with 0.3 mm errors in every hole: the scatter of a standard deviation is then 1.6 percent."""
     pair, effect = pairs[mark], hole_error_effect(pairs[mark])
     right = sprung_curve(pair, pair.left, pair.right)
-    last_turn = float(np.sum(drilled_turn(pair))) * recovered_share(pair.spacing, pair.thickness)
+    last_turn = float(np.sum(drilled_turn(pair))) * pair.recovered
     rises, ends = [], []
     for left_drilled, right_drilled in _drilled_badly(pair, 0.3, 2000):
         curve = sprung_curve(pair, left_drilled, right_drilled)

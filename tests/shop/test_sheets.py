@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from aag_cad.shop.sheets import SheetPlan, SheetRules, area, sheet_plan
+from aag_cad.parts.triangles import polygon_area
+from aag_cad.shop.sheets import SheetPlan, SheetRules, sheet_plan
 from aag_cad.units import Floats
 
 RULES = SheetRules(980.0, (3000.0, 4000.0, 5000.0, 6000.0, 7000.0), 5.0)
@@ -121,7 +122,7 @@ def test_three_shells_of_thirteen_strips_are_proven() -> None:
     assert plan.proven
     assert len(plan.sheets) < 39
     assert plan.bought < plan.first_fit_decreasing
-    total = sum(area(outline) for _, outline in strips)
+    total = sum(polygon_area(outline) for _, outline in strips)
     assert plan.waste_percent == pytest.approx(100.0 * (1.0 - total / (980.0 * plan.bought)))
     assert sheet_plan(strips[::-1], RULES) == plan
 

@@ -17,7 +17,6 @@ from aag_cad.mechanics.siblings import (
     hole_error_effect,
     node_differences,
     over_drill_shift,
-    over_drilled,
     sprung_shape,
 )
 from aag_cad.parts.forms import Hole
@@ -52,11 +51,11 @@ class Prefabrication:
 
 def prefabrication_of(shell: Shell, pair: CoupledPair, timber: Timber) -> Prefabrication:
     """Return what drilling, releasing, over-drilling and sagging give for one beam of a shell."""
-    width = next(plank.blank.section.width for plank in shell.planks if plank.mark in pair.beam.planks)
+    shift = over_drill_shift(pair)
     return Prefabrication(
         pair=pair,
-        drilled=sprung_shape(pair, pair.left, pair.right, timber.modulus, width),
-        corrected=sprung_shape(pair, *over_drilled(pair), timber.modulus, width),
+        drilled=sprung_shape(pair, pair.left, pair.right, timber.modulus),
+        corrected=sprung_shape(pair, pair.left - shift, pair.right + shift, timber.modulus),
         errors=hole_error_effect(pair),
         stands=stand_layout(pair, flat_pair(shell, pair, timber)),
     )

@@ -11,7 +11,8 @@ from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.model import Gridshell, Shell, shell_parts
 from aag_cad.parts.quantities import mass
-from aag_cad.units import MM2_PER_M2, Floats
+from aag_cad.parts.triangles import polygon_area
+from aag_cad.units import MM2_PER_M2
 
 # Partial factors of EN 1990, table A1.2(A) and (B).
 PERMANENT, PERMANENT_FAVOURABLE, VARIABLE = 1.35, 0.9, 1.5
@@ -53,12 +54,7 @@ def plan_area(shell: Shell, closed: bool) -> float:
         if plank.mark in feet and plank.mark in ends
     ]
     fields = pairwise([*lines, *lines[:1]] if closed else lines)
-    return sum(_polygon_area(np.concatenate([a, b[::-1]])) for a, b in fields)
-
-
-def _polygon_area(corners: Floats) -> float:
-    (x, y), (u, v) = corners.T, np.roll(corners, -1, axis=0).T
-    return abs(float(np.sum(x * v - u * y))) / 2.0
+    return sum(polygon_area(np.concatenate([a, b[::-1]])) for a, b in fields)
 
 
 def footing_checks(design: Design, gridshell: Gridshell) -> Iterator[FootingCheck]:

@@ -13,7 +13,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 from aag_cad.geometry.surface import dot, unit
 from aag_cad.parts.model import Strip
 from aag_cad.parts.shapes.shape import Shape
-from aag_cad.parts.triangles import Mesh, tube
+from aag_cad.parts.triangles import Mesh, polygon_area, tube
 from aag_cad.units import Floats
 
 OUTLINE_SPACING = 25.0
@@ -263,7 +263,6 @@ def _pattern(strip: Strip) -> FlatPattern:
     sheet = sheet_of(strip)
     left, right = (_trimmed_edge(sheet, strip, side) for side in (0, 1))
     outline = np.concatenate([left, sheet.upper[1:], right[-2::-1], sheet.lower[-2:0:-1]])
-    after = np.roll(outline, -1, axis=0)
     size = np.ptp(outline, axis=0)
     return FlatPattern(
         outline=outline,
@@ -277,7 +276,7 @@ def _pattern(strip: Strip) -> FlatPattern:
         right_length=_arc_length(sheet, strip, 1),
         left_sagitta=_sagitta(left, 1.0),
         right_sagitta=_sagitta(right, -1.0),
-        area=float((outline[:, 0] * after[:, 1] - after[:, 0] * outline[:, 1]).sum() / 2.0),
+        area=polygon_area(outline),
     )
 
 
