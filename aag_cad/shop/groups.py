@@ -11,7 +11,6 @@ from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
-from aag_cad.errors import DesignError
 from aag_cad.once import once
 from aag_cad.parts.forms import Blank, EndCut
 from aag_cad.parts.index import index_of
@@ -20,6 +19,7 @@ from aag_cad.parts.model import FlatBar, Gridshell
 from aag_cad.units import Floats
 
 TOLERANCE = 0.05
+# Planks of 12 mm that are clamped and drilled together.
 STACK_LIMIT = 3
 _SLACK = 1e-9
 _CELL = 1.0
@@ -50,19 +50,17 @@ class Member:
 class DrillGroup:
     """Planks with one template: its mark, the plank that it is drawn from (the first member), all members.
 
-    Members of one family, index and side are neighbours, shell by shell; a stack holds at most ``stack_limit``.
+    Members of one family, index and side are neighbours, shell by shell.
     """
 
     mark: str
     master: FlatBar
     members: tuple[Member, ...]
-    stack_limit: int
 
     @property
     def stacks(self) -> tuple[tuple[Member, ...], ...]:
         """The members as they are clamped and drilled together."""
-        step = self.stack_limit
-        return tuple(self.members[i : i + step] for i in range(0, len(self.members), step))
+        return tuple(self.members[i : i + STACK_LIMIT] for i in range(0, len(self.members), STACK_LIMIT))
 
 
 def template_mark(number: int) -> str:
@@ -146,14 +144,12 @@ def _shop_order(plank: FlatBar) -> tuple[str, int, str, int]:
     return mark.family, mark.index, mark.part, mark.shell
 
 
-def drill_groups(planks: Iterable[FlatBar], stack_limit: int = STACK_LIMIT) -> tuple[DrillGroup, ...]:
+def drill_groups(planks: Iterable[FlatBar]) -> tuple[DrillGroup, ...]:
     """Return the drilling groups of planks, in the order of family, index and side; each plank is in one group.
 
     A plank joins the first group whose master it equals, so a group never spreads over more than 0.05 mm from its
-    master. ``stack_limit`` is how many planks are clamped together: three of 12 mm. DesignError if it is below 1.
+    master.
     """
-    if stack_limit < 1:
-        raise DesignError(f"stack_limit: {stack_limit} planks cannot be clamped and drilled; give 1 or more")
     drafts: list[tuple[FlatBar, list[Member]]] = []
     cells: dict[tuple[int, int], list[int]] = {}
     for plank in sorted(planks, key=_shop_order):
@@ -169,7 +165,7 @@ def drill_groups(planks: Iterable[FlatBar], stack_limit: int = STACK_LIMIT) -> t
             cells.setdefault((count, math.floor(length / _CELL)), []).append(len(drafts))
             drafts.append((plank, [Member(plank.mark, "as is", tuple(range(count)))]))
     return tuple(
-        DrillGroup(template_mark(number), master, tuple(members), stack_limit)
+        DrillGroup(template_mark(number), master, tuple(members))
         for number, (master, members) in enumerate(drafts, start=1)
     )
 

@@ -1,11 +1,9 @@
 """Reuse passports: what a plank was, carried and kept, so that the next design can cut from it."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from aag_cad.errors import DesignError
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.mechanics.checks.lamella import LamellaStress, lamella_stress
 from aag_cad.parts.forms import Blank, CrossSection
@@ -14,6 +12,7 @@ from aag_cad.parts.model import FlatBar, Gridshell, Timber
 from aag_cad.parts.quantities import largest_twist, smallest_radius
 from aag_cad.units import Floats
 
+# The paper, section 5: the gridshell is to be taken down after two years and its planks to be reused.
 SERVICE_LIFE_YEARS = 2.0
 SAW_KERF = 1.0
 REUSE_HEADER = ("mark", "length_mm", "width_mm", "thickness_mm", "species", "strength_class", "holes")
@@ -58,7 +57,6 @@ class Passport:
     plank: FlatBar
     timber: Timber
     design: str
-    service_life_years: float
     smallest_radius: float
     smallest_radius_station: float
     largest_twist: float
@@ -115,24 +113,13 @@ def _first_peak(stations: Floats, values: Floats) -> float:
     return float(stations[np.argmax(sizes >= 0.999 * sizes.max())])
 
 
-def passport(
-    plank: FlatBar, timber: Timber, design: str, *, service_life_years: float = SERVICE_LIFE_YEARS
-) -> Passport:
-    """Return the passport of a plank.
-
-    The paper, section 5, plans to take the gridshell down after two years and to reuse its planks. DesignError if the
-    service life is not above 0.
-    """
-    if not 0.0 < service_life_years < math.inf:
-        raise DesignError(
-            f"service_life_years: {service_life_years!r} is not allowed; give the planned years in use, above 0, e.g. 2"
-        )
+def passport(plank: FlatBar, timber: Timber, design: str) -> Passport:
+    """Return the passport of a plank."""
     strain = strain_along(plank)
     return Passport(
         plank=plank,
         timber=timber,
         design=design,
-        service_life_years=service_life_years,
         smallest_radius=smallest_radius(plank),
         smallest_radius_station=_first_peak(strain.stations, strain.bending),
         largest_twist=largest_twist(plank),
@@ -142,12 +129,9 @@ def passport(
     )
 
 
-def passports(gridshell: Gridshell, *, service_life_years: float = SERVICE_LIFE_YEARS) -> tuple[Passport, ...]:
+def passports(gridshell: Gridshell) -> tuple[Passport, ...]:
     """Return the passports of all planks of all shells, by mark."""
-    return tuple(
-        passport(plank, gridshell.timber, gridshell.name, service_life_years=service_life_years)
-        for plank in sorted_planks(gridshell)
-    )
+    return tuple(passport(plank, gridshell.timber, gridshell.name) for plank in sorted_planks(gridshell))
 
 
 def reuse_row(held: Passport) -> tuple[str, ...]:

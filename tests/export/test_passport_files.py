@@ -10,7 +10,6 @@ from typing import Any
 import pypdf
 import pytest
 
-from aag_cad.errors import DesignError
 from aag_cad.export.workshop.passports import passports_pdf, write_passports
 from aag_cad.parts.model import Gridshell, Plank
 from aag_cad.parts.quantities import largest_twist, smallest_radius
@@ -120,10 +119,3 @@ def test_a_passport_prints_length_and_first_hole_of_its_plank(pages: list[str], 
 
 def test_the_same_gridshell_gives_the_same_bytes(gridshell: Gridshell, folder: Path) -> None:
     assert passports_pdf(passports(gridshell), gridshell) == (folder / "passports.pdf").read_bytes()
-
-
-def test_a_service_life_that_is_none_leaves_no_file_behind(gridshell: Gridshell, tmp_path: Path) -> None:
-    paths = [tmp_path / name for name in ("a.json", "a.pdf", "a.csv")]
-    with pytest.raises(DesignError, match="service_life_years"):
-        write_passports(gridshell, *paths, service_life_years=0.0)
-    assert list(tmp_path.iterdir()) == []

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aag_cad.errors import DesignError
 from aag_cad.geometry.framed import framed_curve
 from aag_cad.mechanics.checks.lamella import lamella_stress
 from aag_cad.parts.forming import formed_points, plank_axes
@@ -67,19 +66,6 @@ def test_a_passport_says_what_was_cut_and_drilled(gridshell: Gridshell, held: tu
 def test_a_plank_of_12_mm_is_half_of_the_board_of_the_paper() -> None:
     """The paper, section 3: 25 x 100 mm boards were split to two planks of 12 x 100 mm."""
     assert stock_origin(SECTION) == "half of a board 25 x 100 mm, split in two"
-
-
-def test_the_planned_service_life_is_two_years_unless_said_otherwise(shell: Shell, gridshell: Gridshell) -> None:
-    """The paper, section 5: the gridshell is to be taken down after 2 years."""
-    plank = shell.planks[0]
-    assert passport(plank, gridshell.timber, "vault").service_life_years == 2.0
-    assert passport(plank, gridshell.timber, "vault", service_life_years=25.0).service_life_years == 25.0
-
-
-@pytest.mark.parametrize("years", [0.0, -1.0, math.inf, math.nan])
-def test_a_service_life_that_is_none_is_refused(shell: Shell, gridshell: Gridshell, years: float) -> None:
-    with pytest.raises(DesignError, match="service_life_years"):
-        passport(shell.planks[0], gridshell.timber, "vault", service_life_years=years)
 
 
 def test_radius_and_twist_are_those_of_the_part_list(gridshell: Gridshell, held: tuple[Passport, ...]) -> None:

@@ -12,7 +12,7 @@ from typing import Literal, TypeAlias, get_args
 from aag_cad.parts.forms import Blank, Hole, HoleUse
 from aag_cad.parts.marks import short_mark
 from aag_cad.parts.model import Timber
-from aag_cad.shop.groups import HOW_TO_LAY, DrillGroup, cut_slope, drawn_face
+from aag_cad.shop.groups import HOW_TO_LAY, STACK_LIMIT, DrillGroup, cut_slope, drawn_face
 
 Point: TypeAlias = tuple[float, float]
 Side: TypeAlias = Literal["left", "centre", "right"]
@@ -253,7 +253,7 @@ def _title_lines(group: DrillGroup, title: str, timber: Timber) -> tuple[str, ..
         f"{group.mark}   {title}",
         f"length {blank.length:.1f}   section {blank.section.width:g} x {blank.section.thickness:g}"
         f"   {timber.species} {timber.strength_class}   holes {', '.join(hole_kinds(blank)) or 'none'}",
-        f"{count} plank{'s' if count > 1 else ''}, clamped and drilled in stacks of at most {group.stack_limit}",
+        f"{count} plank{'s' if count > 1 else ''}, clamped and drilled in stacks of at most {STACK_LIMIT}",
         *laying_lines(group),
         f"Drawn: {group.master.mark}, {drawn_face(group.master)}. Joints stand without their shell.",
         "Dimensions in mm from the start; per hole: station, offset from the centre line (up is +), diameter, joint.",

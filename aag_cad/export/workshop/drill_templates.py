@@ -25,7 +25,7 @@ from aag_cad.files import write_bytes
 from aag_cad.parts.forms import Blank, Hole
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Gridshell, Timber
-from aag_cad.shop.groups import DrillGroup, drawn_face, drilled_joints, templates_of
+from aag_cad.shop.groups import STACK_LIMIT, DrillGroup, drawn_face, drilled_joints, templates_of
 from aag_cad.typesetting import printout_pdf
 from aag_cad.units import MM_PER_M
 
@@ -173,7 +173,7 @@ def _sheets(
         ],
         "laying": laying,
         "count": len(group.members),
-        "stack": group.stack_limit,
+        "stack": STACK_LIMIT,
         "parts": len(strips),
         "pages": [strips[i : i + rows] for i in range(0, len(strips), rows)],
     }

@@ -46,15 +46,12 @@ def write_passports(
     json_path: str | os.PathLike[str],
     pdf_path: str | os.PathLike[str],
     csv_path: str | os.PathLike[str],
-    *,
-    service_life_years: float = SERVICE_LIFE_YEARS,
 ) -> None:
     """Write the passports of all planks as JSON, as PDF and as stock rows; equal gridshells give equal bytes.
 
-    DesignError if the service life is not above 0, FileError if a file cannot be written. The planned service life of
-    2 years is the paper's (section 5).
+    FileError if a file cannot be written.
     """
-    held = passports(gridshell, service_life_years=service_life_years)
+    held = passports(gridshell)
     write_text(json_path, passports_json(held, gridshell))
     write_csv(csv_path, REUSE_HEADER, map(reuse_row, held))
     write_bytes(pdf_path, passports_pdf(held, gridshell))
@@ -82,7 +79,7 @@ def _plain(held: Passport) -> dict[str, Any]:
         "width_mm": blank.section.width,
         "thickness_mm": blank.section.thickness,
         "stock_origin": stock_origin(blank.section),
-        "service_life_years": held.service_life_years,
+        "service_life_years": SERVICE_LIFE_YEARS,
         "smallest_radius_mm": round(held.smallest_radius, 1) if bent else None,
         "smallest_radius_at_mm": round(held.smallest_radius_station, 1) if bent else None,
         "largest_twist_deg_per_m": round(twist, 3),
@@ -163,7 +160,7 @@ def _facts(held: Passport) -> list[tuple[str, str]]:
             f"{blank.section.width:g} mm, {blank.length:.1f} mm long, {len(blank.holes)} holes",
         ),
         ("cut from", stock_origin(blank.section)),
-        ("planned use", f"{held.service_life_years:g} years in {held.design}"),
+        ("planned use", f"{SERVICE_LIFE_YEARS:g} years in {held.design}"),
         ("bent to radius", radius if math.isfinite(held.smallest_radius) else "straight"),
         ("twisted by", twisted),
         ("bending", f"{held.stress.combined:.1f} N/mm², {held.bending_utilisation:.2f} of the strength"),
