@@ -101,21 +101,19 @@ def web_of(design: Design, chart: AsymptoticChart) -> Web:
     return sampled_web(chart, step * np.arange(-below, rows + 1, dtype=np.float64), np.asarray(theta, dtype=np.float64))
 
 
-def _started(design: Design, wish: Optimise) -> StartWeb:
+def _optimised(design: Design, wish: Optimise, report: IterationReport) -> tuple[StartWeb, Optimised]:
     chart = chart_of(design)
-    return start_web(design, wish, chart, top_coordinate(design, chart, 0.0))
-
-
-def _method(wish: Optimise) -> Method:
-    return Method(wish.method == "levenberg-marquardt", best_factorisation())
+    start = start_web(design, wish, chart, top_coordinate(design, chart, 0.0))
+    method = Method(wish.method == "levenberg-marquardt", best_factorisation())
+    return start, optimise(start.web, start.goals, report, method)
 
 
 def optimised_design(design: Design, report: IterationReport = lambda iteration: None) -> tuple[Optimised, Goals]:
     """Return the optimised web of a design and its goals; DesignError if the design has no table [optimise]."""
     if design.optimise is None:
         raise DesignError("optimise: the design has no table [optimise]; add one, or build the design as it is")
-    start = _started(design, design.optimise)
-    return optimise(start.web, start.goals, report, _method(design.optimise)), start.goals
+    start, found = _optimised(design, design.optimise, report)
+    return found, start.goals
 
 
 def optimised_mesh(path: str, goals: Goals, report: IterationReport = lambda iteration: None) -> Optimised:
@@ -131,8 +129,7 @@ def worked_surface(design: Design) -> tuple[Chart, Web]:
     if design.optimise is None:
         chart = chart_of(design)
         return chart, web_of(design, chart)
-    start = _started(design, design.optimise)
-    found = optimise(start.web, start.goals, method=_method(design.optimise))
+    start, found = _optimised(design, design.optimise, lambda iteration: None)
     if not found.success:
         raise DesignError(
             f"optimise: {found.reason}: {found.explanation}; change the goals, or look at `aag optimise` of this design"

@@ -30,9 +30,7 @@ def ruling_stations(left: FramedCurve, right: FramedCurve, stations: Floats) -> 
     if rulings cross.
     """
     start, tangent, _ = _tangents(left, stations)
-    samples = right.points
-    nearest = np.argmin(np.linalg.norm(start[:, None] - samples[None], axis=2), axis=1)
-    found = nearest_station(right, start, right.stations[nearest])
+    found = nearest_station(right, start)
     step = np.zeros_like(found)
     for _ in range(_STEPS):
         point, other, turning = _tangents(right, found)

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
+from scipy.spatial import cKDTree
 
 from aag_cad.geometry.surface import dot, unit
 from aag_cad.units import Floats
@@ -142,9 +143,12 @@ def offset_curve(
     return framed_curve(evaluate, start, end, end - start)
 
 
-def nearest_station(curve: FramedCurve, points: Floats, guess: Floats) -> Floats:
-    """Return the stations (n,) whose normal planes hold the points (n, 3), by Newton's method from a guess (n,)."""
-    stations = guess.astype(float)
+def nearest_station(curve: FramedCurve, points: Floats, guess: Floats | None = None) -> Floats:
+    """Return the stations (n,) whose normal planes hold the points (n, 3).
+
+    By Newton's method from a guess (n,), without one from the samples that are nearest to the points.
+    """
+    stations = curve.stations[cKDTree(curve.points).query(points)[1]] if guess is None else guess.astype(float)
     for _ in range(20):
         gap = curve.point_spline(stations) - points
         first, second = curve.point_spline(stations, nu=1), curve.point_spline(stations, nu=2)

@@ -138,8 +138,7 @@ def _crossings(chart: Chart, curves: dict[CurveId, FramedCurve], meetings: list[
     for name, curve in curves.items():
         where = [(i, k) for i, m in enumerate(meetings) for k in (0, 1) if m.curves[k] == name]
         points = jet.point[[i for i, _ in where]]
-        nearest = np.argmin(np.linalg.norm(points[:, None] - curve.points[None], axis=2), axis=1)
-        for (i, k), station in zip(where, nearest_station(curve, points, curve.stations[nearest]), strict=True):
+        for (i, k), station in zip(where, nearest_station(curve, points), strict=True):
             stations[i, k] = station
     return [
         Crossing(m.kind, m.curves, (float(a), float(b)), vector(point), vector(normal))

@@ -135,10 +135,7 @@ def _is_mirrored(network: CurveNetwork) -> bool:
         return False
     left, right = curves[LEFT_RIDGE], curves[RIGHT_RIDGE]
     points = left.curve.points * [1.0, -1.0, 1.0]
-    nearest = right.curve.stations[
-        np.argmin(np.linalg.norm(points[:, None] - right.curve.points[None], axis=2), axis=1)
-    ]
-    gap = right.curve.point_spline(nearest_station(right.curve, points, nearest)) - points
+    gap = right.curve.point_spline(nearest_station(right.curve, points)) - points
     return bool(np.linalg.norm(gap, axis=1).max() < _MIRRORED)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from aag_cad.design import Design
 from aag_cad.families import GEODESICS
-from aag_cad.geometry.framed import frames_at
+from aag_cad.geometry.framed import frames_at, nearest_station
 from aag_cad.geometry.revolution import turn
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork
 from aag_cad.parts.blades import BladeJoint, blade_joints, own_sides
@@ -26,7 +26,6 @@ from aag_cad.parts.members import (
     curve_mark,
     drilled,
     grouped,
-    stations_of,
     undrilled_members,
     with_joints,
 )
@@ -71,7 +70,7 @@ def _beam_joints(design: Design, marked: list[tuple[Mark, Crossing]], beams: dic
     station = {
         (curve, i): float(s)
         for curve, at in places.items()
-        for (i, _), s in zip(at, stations_of(beams[curve], np.array([p for _, p in at])), strict=True)
+        for (i, _), s in zip(at, nearest_station(beams[curve].curve, np.array([p for _, p in at])), strict=True)
     }
     built = []
     for i, (mark, crossing) in enumerate(listed):
@@ -114,7 +113,7 @@ def _on_beam(design: Design, beam: Beam, joints: list[Joint]) -> list[tuple[Floa
     """Return for each joint the point on the beam's curve and the direction across it, each (3,)."""
     lift = beam.layer * design.layer_offset
     points = np.array([np.array(joint.point) + lift * np.array(joint.normal) for joint in joints])
-    frames = frames_at(beam.curve, stations_of(beam, points))
+    frames = frames_at(beam.curve, nearest_station(beam.curve, points))
     return list(zip(frames.point, frames.binormal, strict=True))
 
 

@@ -26,7 +26,7 @@ from aag_cad.parts.marks import Mark, joint_of, parse_mark, part_mark
 from aag_cad.parts.members import Drilling, curve_mark, drilled, grouped, with_joints
 from aag_cad.parts.model import ClampingBar, CouplingBlock, Joint, Mullion, Plank, Screw, Shell, Strip
 from aag_cad.parts.shapes.sheet import Limit, Sheet, along_cut, depth_inside, sheet_of
-from aag_cad.units import MM_PER_M, Floats, vector
+from aag_cad.units import MM_PER_M, vector
 
 # Four samples past the end of a curve its spline is off by about 0.02 mm, and slanting cuts leave little sheet there.
 _REACH = 4.0 * SAMPLE_SPACING
@@ -203,17 +203,11 @@ def _drilled_bar(bar: _Bar, screws: Sequence[Screw], diameter: float) -> _Bar:
     return replace(bar, blank=replace(bar.blank, holes=tuple(sorted(holes, key=lambda hole: hole.station))))
 
 
-def _stations_on(item: NetworkCurve, points: Floats) -> list[float]:
-    """Return the stations on a geodesic that are nearest to points (n, 3)."""
-    nearest = np.argmin(np.linalg.norm(points[:, None] - item.curve.points[None], axis=2), axis=1)
-    return [float(s) for s in nearest_station(item.curve, points, item.curve.stations[nearest])]
-
-
 def _crossings(line: _Line, joints: Sequence[Joint]) -> list[tuple[float, Joint]]:
     """Return the joints of a geodesic with beams, each with its station."""
     own = [joint for joint in joints if joint.kind == "AG" and line.plank.mark in joint.members]
     points = np.array([joint.point for joint in own]).reshape(-1, 3)
-    return list(zip(_stations_on(line.item, points), own, strict=True))
+    return list(zip(nearest_station(line.item.curve, points).tolist(), own, strict=True))
 
 
 def _is_outer(joint: Joint) -> bool:
@@ -225,7 +219,8 @@ def _wanted_stations(design: Design, line: _Line, beams: list[float]) -> list[fl
 
     ``beams`` are the stations of those that are there.
     """
-    spacing, (first, last) = design.facade.support_spacing, _stations_on(line.item, line.mullion.curve.points[[0, -1]])
+    spacing = design.facade.support_spacing
+    first, last = nearest_station(line.item.curve, line.mullion.curve.points[[0, -1]]).tolist()
     supports, wanted = sorted(beams), []
     if not supports or supports[0] - first > _EARLY * FREE_END * spacing:
         wanted.append(line.item.start + _STAND_OFF_END)

@@ -2,7 +2,6 @@
 
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
-from scipy.spatial import cKDTree
 
 from aag_cad.geometry.framed import Frames, frames_at, nearest_station
 from aag_cad.geometry.surface import dot
@@ -47,8 +46,7 @@ def formed_points(plank: FlatBar, blank_points: Floats) -> Floats:
 
 def blank_points(plank: FlatBar, points: Floats) -> Floats:
     """Return the coordinates (n, 3) in the straight blank of points (n, 3) near the formed plank."""
-    _distance, nearest = cKDTree(plank.curve.points).query(points)
-    stations = nearest_station(plank.curve, points, plank.curve.stations[nearest])
+    stations = nearest_station(plank.curve, points)
     centre, _tangent, width, thickness = plank_axes(plank, stations)
     gap = points - centre
     return np.column_stack([stations, dot(gap, width), dot(gap, thickness)])

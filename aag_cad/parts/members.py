@@ -71,13 +71,6 @@ def undrilled_members(design: Design, shell: int, network: CurveNetwork) -> tupl
     return beams, planks
 
 
-def stations_of(curve: Member, points: Floats) -> Floats:
-    """Return the arc-length stations (n,) on a plank or beam of the points (n, 3) nearest to it."""
-    samples = curve.curve.points
-    nearest = np.argmin(np.linalg.norm(points[:, None] - samples[None], axis=2), axis=1)
-    return nearest_station(curve.curve, points, curve.curve.stations[nearest])
-
-
 def drilled(plank: Plank, drillings: Iterable[Drilling]) -> Plank:
     """Return the plank with its holes: each where its straight axis pierces the formed plank's middle surface."""
     wanted = list(drillings)
@@ -96,7 +89,7 @@ def with_joints(member: Member, joints: Iterable[tuple[str, Floats]]) -> tuple[J
     listed = list(joints)
     if not listed:
         return ()
-    stations = stations_of(member, np.array([point for _, point in listed]))
+    stations = nearest_station(member.curve, np.array([point for _, point in listed]))
     return tuple(
         sorted(
             (JointStation(mark, float(s)) for (mark, _), s in zip(listed, stations, strict=True)),
