@@ -251,11 +251,11 @@ def plan(
         folder = output or Path(read.name)
         files = {} if explain else write_plan(result, folder, report)
     if explain:
-        print("\n".join(explained(result, explain, printed)))
+        print("\n".join(explained(result, explain)))
         return
     findings = [finding_row(finding, printed) for finding in result.findings]
     if as_json:
-        print(plan_json(result.file()), end="")
+        print(plan_json(result.file), end="")
     else:
         shown = [f"{len(result.plan.steps)} steps, {result.schedule.days:.1f} days for {read.crew.people}"]
         for order in result.locking[:1] if edges_first else ():

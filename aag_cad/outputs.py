@@ -15,7 +15,7 @@ from aag_cad.export.ifc.model import write_ifc
 from aag_cad.export.ifc.options import IfcOptions
 from aag_cad.export.ifc.schedule import PlannedWork
 from aag_cad.export.office.overview import write_overview
-from aag_cad.export.office.plan_files import PLAN_WRITERS, PlanDossier
+from aag_cad.export.office.plan_files import PlanDossier, write_plan_output
 from aag_cad.export.office.purchases import write_cutting, write_purchases
 from aag_cad.export.office.tables import write_checks_table, write_holes_table, write_parts_table
 from aag_cad.export.workshop.btlx import write_btlx
@@ -55,10 +55,10 @@ Writer: TypeAlias = Callable[[Dossier, Path], None]
 
 
 def _write_ifc(dossier: Dossier, folder: Path) -> None:
-    gridshell, design, planned = dossier.gridshell, dossier.model.design, dossier.plan.planned
+    gridshell, design, plan = dossier.gridshell, dossier.model.design, dossier.plan
     project = design.project
     options = replace(dossier.ifc, site=design.site, author=project.author, organisation=project.organisation)
-    work = PlannedWork(planned.plan, planned.schedule, design.crew, planned.segmentation)
+    work = PlannedWork(plan.plan, plan.schedule, plan.crew, plan.segmentation)
     write_ifc(gridshell, folder / f"{gridshell.name}.ifc", work, options)
 
 
@@ -87,7 +87,7 @@ def _write_facade(dossier: Dossier, folder: Path) -> None:
 
 def _plan_writer(name: str) -> Writer:
     """Return the writer of an output of the plan."""
-    return lambda dossier, folder: PLAN_WRITERS[name](dossier.plan, folder)
+    return lambda dossier, folder: write_plan_output(dossier.plan, name, folder)
 
 
 def _write_web(dossier: Dossier, folder: Path) -> None:

@@ -22,7 +22,7 @@ from aag_cad.design_tables import (
 from aag_cad.errors import DesignError
 from aag_cad.export.ifc.options import IfcOptions, require_known
 from aag_cad.export.office.optimise_report import write_report
-from aag_cad.export.office.plan_files import PlanDossier
+from aag_cad.export.office.plan_files import gridshell_dossier
 from aag_cad.export.office.summary import summary_of, write_summary
 from aag_cad.files import publishing, read_text, sizes_below, write_bytes, write_text
 from aag_cad.findings import Finding, worst_first
@@ -224,7 +224,8 @@ def build(
         begin("assembly")
         planned = checked_plans(model.gridshell, design.crew, limits_of(design.transport))
         findings = worst_first([*checked, *planned.findings])
-        dossier = Dossier(model, PlanDossier(planned, model.gridshell, design.crew, printed), purchases, ifc_options)
+        plan = gridshell_dossier(planned, model.gridshell, design.crew, printed)
+        dossier = Dossier(model, plan, purchases, ifc_options)
         for output in outputs:
             begin(output)
             EVERY_OUTPUT[output](dossier, staging)

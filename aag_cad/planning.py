@@ -1,7 +1,6 @@
 """Planning alone: a design, a gridshell.json or any graph of parts -> plan -> files; or why a part comes then."""
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,60 +10,45 @@ import networkx as nx
 from aag_cad.design import load_design
 from aag_cad.design_making import Crew
 from aag_cad.errors import DesignError, FileError
-from aag_cad.export.office.plan_files import PLAN_WRITERS, PlanDossier, write_graph_groups, write_graph_plan
+from aag_cad.export.office.plan_files import (
+    PLAN_OUTPUTS,
+    PlanDossier,
+    graph_dossier,
+    gridshell_dossier,
+    write_plan_output,
+)
 from aag_cad.files import publishing, read_text, sizes_below
-from aag_cad.findings import Finding, worst_first
+from aag_cad.findings import Finding
 from aag_cad.language import Language, printed
 from aag_cad.parts.model import Gridshell
 from aag_cad.parts.store import read_gridshell
 from aag_cad.pipeline import Report, checked_plans, gridshell_of
-from assembly.base.locking_order import LockingOrder
 from assembly.base.phases import is_down
 from assembly.base.segments import Limits
-from assembly.base.steps import Plan
-from assembly.booklet.plan_file import PlanFile, graph_pieces, gridshell_pieces, plan_file, read_plan
+from assembly.booklet.plan_file import read_plan
 from assembly.checks.findings import disassembly_faults, graph_plan_faults, plan_faults
 from assembly.graph.files import graph_text, read_graph, read_graphml, shipped_graphs
-from assembly.graph.gridshell_graph import assembly_graph
+from assembly.graph.whole import whole_graph
 from assembly.plan.durations import step_minutes
 from assembly.plan.explain import explanation
 from assembly.plan.graph_plan import graph_plan
 from assembly.plan.planned import NO_LIMITS, limits_of, planned_of
-from assembly.plan.schedule import Schedule, schedule_of
+from assembly.plan.schedule import schedule_of
 
 # For what names no crew: four people who lift 25 kg each (EN 1005-2, the mass that most adults may lift).
 FOUR = Crew.model_validate({"people": 4, "lift_limit": 25.0})
 _GRAPHML = (".graphml", ".xml")
-STAGES = 2 + len(PLAN_WRITERS)
+STAGES = 2 + len(PLAN_OUTPUTS)
 
 
 @dataclass(frozen=True)
 class Source:
-    """What is planned: a gridshell with its crew and transport, or any graph of parts with a crew."""
+    """What is planned, a gridshell or any networkx graph of parts, by which crew and for which transport."""
 
     name: str
     crew: Crew
     limits: Limits
-    gridshell: Gridshell | None = None
-    graph: "nx.MultiGraph[str] | None" = None
-
-
-@dataclass(frozen=True)
-class Result:
-    """What was planned: plan, schedule, locking orders; what makes the graph and plan.json, and writes the files."""
-
-    plan: Plan
-    schedule: Schedule
-    found: tuple[Finding, ...]
-    locking: tuple[LockingOrder, ...]
-    graph: Callable[[], "nx.MultiGraph[str]"]
-    file: Callable[[], PlanFile]
-    writers: dict[str, Callable[[Path], None]]
-
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """What cannot be done so, the worst first."""
-        return worst_first(self.found)
+    whole: "Gridshell | nx.Graph[str]"
 
 
 def _keys(text: str, path: str) -> set[str]:
@@ -87,14 +71,14 @@ def read_source(source: str, people: int | None = None, limits: Limits | None = 
         keys = {"graphml"} if ending in _GRAPHML else _keys(text, source)
         if "shells" in keys:
             gridshell = read_gridshell(text)
-            return Source(gridshell.name, crew, limits or NO_LIMITS, gridshell=gridshell)
+            return Source(gridshell.name, crew, limits or NO_LIMITS, gridshell)
         if keys & {"nodes", "graphml"}:
             graph = read_graphml(text) if "graphml" in keys else read_graph(text)
-            return Source(Path(source).stem, crew, limits or NO_LIMITS, graph=graph)
+            return Source(Path(source).stem, crew, limits or NO_LIMITS, graph)
         raise FileError(f"{source}: neither a gridshell (key shells) nor a graph of parts (keys nodes and edges)")
     design = load_design(source)
     crew = _crew_with(design.crew, people)
-    return Source(design.project.name, crew, limits or limits_of(design.transport), gridshell=gridshell_of(design))
+    return Source(design.project.name, crew, limits or limits_of(design.transport), gridshell_of(design))
 
 
 def _crew_with(crew: Crew, people: int | None) -> Crew:
@@ -106,44 +90,19 @@ def _crew_with(crew: Crew, people: int | None) -> Crew:
     return crew.model_copy(update={"people": people})
 
 
-def planned_source(source: Source, language: Language = "en", edges_first: bool = True) -> Result:
-    """Return the plan of a source with what writes its files; PlanError where it cannot be planned.
+def planned_source(source: Source, language: Language = "en", edges_first: bool = True) -> PlanDossier:
+    """Return the plan of a source with what its files are written from; PlanError where it cannot be planned.
 
     ``edges_first``: edge planks are fixed before all geodesics, as in the paper.
     """
-    crew = source.crew
-    if source.gridshell is not None:
-        gridshell = source.gridshell
-        planned = checked_plans(gridshell, crew, source.limits, edges_first)
-        dossier = PlanDossier(planned, gridshell, crew, language)
-        return Result(
-            planned.plan,
-            planned.schedule,
-            planned.findings,
-            planned.locking,
-            lambda: assembly_graph(gridshell),
-            lambda: plan_file(planned.plan, planned.schedule, crew, gridshell_pieces(gridshell), planned.segmentation),
-            {name: _bound(writer, dossier) for name, writer in PLAN_WRITERS.items()},
-        )
-    assert source.graph is not None
-    graph = source.graph
+    whole, crew = source.whole, source.crew
+    if isinstance(whole, Gridshell):
+        return gridshell_dossier(checked_plans(whole, crew, source.limits, edges_first), whole, crew, language)
+    graph = whole_graph(whole)
     plan = graph_plan(graph, crew.people, crew.lift_limit)
     plan = replace(plan, findings=(*plan.findings, *graph_plan_faults(plan, graph, crew.people)))
     schedule = schedule_of(plan, step_minutes(plan, graph, crew.minutes), crew.people, crew.hours_per_day)
-    writers: dict[str, Callable[[Path], None]] = {
-        "files": lambda folder: write_graph_plan(graph, plan, schedule, crew, folder, language)
-    }
-    if source.limits != NO_LIMITS:
-        writers["segments"] = lambda folder: write_graph_groups(graph, source.limits, folder)
-    return Result(
-        plan,
-        schedule,
-        plan.findings,
-        (),
-        lambda: graph,
-        lambda: plan_file(plan, schedule, crew, graph_pieces(graph)),
-        writers,
-    )
+    return graph_dossier(plan, schedule, graph, crew, language, source.limits)
 
 
 def file_faults(path: str, gridshell: Gridshell, crew: Crew, limits: Limits) -> tuple[Finding, ...]:
@@ -159,20 +118,16 @@ def file_faults(path: str, gridshell: Gridshell, crew: Crew, limits: Limits) -> 
     return plan_faults(plan, gridshell, planned.segmentation, planned.locking)
 
 
-def _bound(writer: Callable[[PlanDossier, Path], None], dossier: PlanDossier) -> Callable[[Path], None]:
-    return lambda folder: writer(dossier, folder)
-
-
-def write_plan(result: Result, folder: Path, report: Report = lambda stage: None) -> dict[str, int]:
+def write_plan(dossier: PlanDossier, folder: Path, report: Report = lambda stage: None) -> dict[str, int]:
     """Write the files of a plan into a folder, all or none; return their sizes. FileError if it cannot be written."""
     with publishing(folder) as staging:
-        for stage, write in result.writers.items():
-            report(stage)
-            write(staging)
+        for output in PLAN_OUTPUTS:
+            report(output)
+            write_plan_output(dossier, output, staging)
         return sizes_below(staging)
 
 
-def explained(result: Result, mark: str, language: Language = "en") -> list[str]:
+def explained(dossier: PlanDossier, mark: str) -> list[str]:
     """Return why a part or beam comes when it does, one line each; PlanError if nothing has the mark."""
-    lines = explanation(result.graph(), result.plan, mark, result.schedule, result.locking)
-    return [printed(line, language) for line in lines]
+    lines = explanation(dossier.graph(), dossier.plan, mark, dossier.schedule, dossier.locking)
+    return [printed(line, dossier.language) for line in lines]

@@ -245,9 +245,9 @@ def test_to_slide_a_plank_in_takes_as_long_in_any_weave_as_in_a_gridshell() -> N
 def test_the_plan_does_not_depend_on_the_hash_of_marks() -> None:
     code = (
         "from aag_cad.planning import planned_source, read_source; from assembly.booklet.plan_file import plan_json; "
-        "print(plan_json(planned_source(read_source('kagome')).file()))"
+        "print(plan_json(planned_source(read_source('kagome')).file))"
     )
-    here = plan_json(planned_source(read_source("kagome")).file())
+    here = plan_json(planned_source(read_source("kagome")).file)
     environment = os.environ | {"PYTHONHASHSEED": "4711"}
     there = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
     assert there.stdout.strip() == here.strip()
