@@ -6,7 +6,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import icalendar
+import ifcopenshell
 import pytest
+from ifcopenshell.util.element import get_pset
 
 from aag_cad.parts.model import Gridshell
 from aag_cad.parts.store import read_gridshell
@@ -66,6 +69,21 @@ def test_a_second_build_gives_the_same_bytes_but_for_the_seconds(built: Path, tm
     first, second = (json.loads((folder / "summary.json").read_text()) for folder in (built, again))
     assert first.pop("seconds") != second.pop("seconds")
     assert first == second
+
+
+def test_calendar_and_ifc_tell_the_same_times(built: Path) -> None:
+    """Read back by their own libraries: when each step begins and ends, by its number."""
+    events = icalendar.Calendar.from_ical((built / "schedule.ics").read_bytes()).walk("VEVENT")
+    told = {
+        int(str(event["SUMMARY"]).split(" ")[0]): (event["DTSTART"].dt.isoformat(), event["DTEND"].dt.isoformat())
+        for event in events
+    }
+    tasks = ifcopenshell.open(str(built / "vault.ifc")).by_type("IfcTask")
+    assert told == {
+        get_pset(task, "AAG_Step", "StepNumber"): (task.TaskTime.ScheduleStart, task.TaskTime.ScheduleFinish)
+        for task in tasks
+    }
+    assert told[1][0] == "2027-03-01T07:00:00"
 
 
 def test_gridshell_json_is_the_model_itself(built: Path, gridshell: Gridshell) -> None:

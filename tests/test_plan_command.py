@@ -49,7 +49,7 @@ def test_a_design_becomes_a_folder_of_plans(folder: Path) -> None:
         "tables/locking.csv", "tables/segments.csv", "tables/splices.csv", "tables/laying.csv",
     }  # fmt: skip
     gridshell = gridshell_of(parse_design((folder / "small.toml").read_text(encoding="utf-8")))
-    plan = read_plan((folder / "up" / "plan.json").read_text(encoding="utf-8"))
+    plan = read_plan((folder / "up" / "plan.json").read_text(encoding="utf-8")).plan
     assert max(step.crew for step in plan.steps) <= 3
     assert any(step.phase == "splice" for step in plan.steps)
     assert "AAG961" in run.stdout
@@ -62,8 +62,8 @@ def test_a_design_becomes_a_folder_of_plans(folder: Path) -> None:
 def test_a_gridshell_file_gives_the_plan_of_its_design(folder: Path) -> None:
     run = _aag("gridshell.json", "-o", "from-file", "--json", "--lang", "de", cwd=folder)
     assert run.returncode == 0, run.stderr
-    plan = read_plan(run.stdout)
-    assert plan.language == "de"
+    plan = read_plan(run.stdout).plan
+    assert '<html lang="de">' in (folder / "from-file" / "sequence.html").read_text(encoding="utf-8")
     gridshell = gridshell_of(parse_design((folder / "small.toml").read_text(encoding="utf-8")))
     assert check_plan(plan, gridshell) == []
     assert (folder / "from-file" / "plan.json").read_text(encoding="utf-8") == run.stdout
@@ -72,10 +72,8 @@ def test_a_gridshell_file_gives_the_plan_of_its_design(folder: Path) -> None:
 def test_a_true_weave_is_planned_with_slides_and_groups_for_the_lorry(folder: Path) -> None:
     run = _aag("kagome", "-o", "woven", "--transport", "4000x4000x4000x30", cwd=folder)
     assert run.returncode == 0, run.stderr
-    plan, graph = (
-        read_plan((folder / "woven" / "plan.json").read_text(encoding="utf-8")),
-        read_graph(graph_text("kagome")),
-    )
+    plan = read_plan((folder / "woven" / "plan.json").read_text(encoding="utf-8")).plan
+    graph = read_graph(graph_text("kagome"))
     assert check_graph_plan(plan, graph, 4) == []
     assert sum(step.phase == "slide" for step in plan.steps) == 6
     with (folder / "woven" / "tables" / "segments.csv").open(encoding="utf-8") as file:
@@ -88,11 +86,11 @@ def test_an_impossible_weave_ends_with_its_marks_and_exit_code_1(folder: Path) -
     run = _aag("impossible", "-o", "impossible", cwd=folder)
     assert run.returncode == 1
     assert "1 errors in the plan of impossible" in run.stderr
-    plan = read_plan((folder / "impossible" / "plan.json").read_text(encoding="utf-8"))
-    (finding,) = (finding for finding in plan.findings if finding.severity == "error")
+    file = read_plan((folder / "impossible" / "plan.json").read_text(encoding="utf-8"))
+    (finding,) = (finding for finding in file.findings if finding.severity == "error")
     assert finding.code == "AAG951"
     assert all(mark in finding.mark for mark in ("B-1", "B-2", "B-3", "B-4"))
-    assert not any(mark.startswith("B-") for step in plan.steps for mark in step.marks)
+    assert not any(mark.startswith("B-") for step in file.plan.steps for mark in step.marks)
 
 
 def test_explain_says_why_and_writes_nothing(folder: Path) -> None:
