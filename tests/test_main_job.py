@@ -78,10 +78,10 @@ def test_calendar_and_ifc_tell_the_same_times(built: Path) -> None:
         int(str(event["SUMMARY"]).split(" ")[0]): (event["DTSTART"].dt.isoformat(), event["DTEND"].dt.isoformat())
         for event in events
     }
-    tasks = ifcopenshell.open(str(built / "vault.ifc")).by_type("IfcTask")
+    file = ifcopenshell.open(str(built / "vault.ifc"))
     assert told == {
         get_pset(task, "AAG_Step", "StepNumber"): (task.TaskTime.ScheduleStart, task.TaskTime.ScheduleFinish)
-        for task in tasks
+        for task in file.by_type("IfcTask")
     }
     assert told[1][0] == "2027-03-01T07:00:00"
 

@@ -85,7 +85,7 @@ def test_a_true_weave_is_planned_with_slides_and_groups_for_the_lorry(folder: Pa
 def test_an_impossible_weave_ends_with_its_marks_and_exit_code_1(folder: Path) -> None:
     run = _aag("impossible", "-o", "impossible", cwd=folder)
     assert run.returncode == 1
-    assert "1 errors in the plan of impossible" in run.stderr
+    assert "1 error in the plan of impossible" in run.stderr
     file = read_plan((folder / "impossible" / "plan.json").read_text(encoding="utf-8"))
     (finding,) = (finding for finding in file.findings if finding.severity == "error")
     assert finding.code == "AAG951"

@@ -87,8 +87,8 @@ def standing_props(
         return ()
     points = dict(studs) | dict(blocks)
 
-    def margin(marks: tuple[str, ...]) -> int:
-        return round(standing_margin(feet, [points[mark] for mark in marks], centre))
+    def margin(marks: tuple[str, ...]) -> float:
+        return round(standing_margin(feet, [points[mark] for mark in marks], centre), 0)
 
     def worth(marks: tuple[str, ...]) -> tuple[float, float]:
         return margin(marks), round(sum(float(points[mark][2]) for mark in marks), 3)

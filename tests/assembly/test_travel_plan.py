@@ -13,6 +13,7 @@ from aag_cad.design import Design, load_design
 from aag_cad.language import printed
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.pipeline import gridshell_of
+from aag_cad.units import Floats
 from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Brace, Limits, Segmentation
 from assembly.base.steps import Bracing, Plan, PropsAway, SplicePut, Step, StepProp, WholeShell, carried
@@ -27,7 +28,7 @@ from assembly.plan.parting import divide_works
 from assembly.plan.piece_weights import piece_weights
 from assembly.plan.schedule import schedule_of
 from assembly.plan.site_work import site_works
-from assembly.transport.lifting import margin_inside
+from assembly.transport.lifting import margin_inside, standing_margin, standing_props
 from assembly.transport.seams import seams, standing_order
 from assembly.transport.segments import segments
 
@@ -213,6 +214,19 @@ def test_the_margin_inside_a_square_is_the_distance_to_its_nearest_side() -> Non
     assert margin_inside(square, np.array([1.0, 2.0])) == pytest.approx(1.0)
     assert margin_inside(square, np.array([5.0, 2.0])) == pytest.approx(-1.0)
     assert margin_inside(square[:2], np.array([1.0, 0.0])) == -np.inf
+
+
+def test_where_feet_and_studs_are_in_one_line_blocks_beside_it_are_propped() -> None:
+    """No two of the studs hold what stands there; on the blocks its plumb line runs 300 mm from the feet."""
+
+    def along(*xs: float, y: float = 0.0, z: float = 0.0) -> list[Floats]:
+        return [np.array([x, y, z]) for x in xs]
+
+    feet, centre = along(0.0, 1000.0), np.array([500.0, 300.0, 800.0])
+    studs = dict(zip("abc", along(0.0, 500.0, 1000.0, z=1500.0), strict=True))
+    blocks = dict(zip("de", along(0.0, 1000.0, y=1000.0, z=1000.0), strict=True))
+    assert standing_props(feet, studs, blocks, centre) == ("d", "e")
+    assert standing_margin(feet, list(blocks.values()), centre) == pytest.approx(300.0)
 
 
 FAULTS: list[tuple[Callable[[Plan], Plan], str]] = [
