@@ -15,7 +15,7 @@ from making import a_crew
 
 from aag_cad.export.ifc.model import write_ifc
 from aag_cad.export.ifc.schedule import PlannedWork
-from aag_cad.export.office.plan_files import PLAN_WRITERS, PlanDossier
+from aag_cad.export.office.plan_files import gridshell_dossier, write_plan_output
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.resources import template
 from assembly.base.segments import Limits, Segmentation
@@ -45,8 +45,8 @@ def built(gridshell: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> Bui
     one = replace(gridshell, shells=gridshell.shells[:1], blades=(), bolts=(), joints=())
     folder, crew = tmp_path_factory.mktemp("cut"), a_crew(4, start=START)
     planned = planned_of(one, crew, LORRY)
-    for name in ("plan", "schedule"):
-        PLAN_WRITERS[name](PlanDossier(planned, one, crew), folder)
+    for output in ("plan", "schedule"):
+        write_plan_output(gridshell_dossier(planned, one, crew), output, folder)
     write_ifc(one, folder / "cut.ifc", PlannedWork(planned.plan, planned.schedule, crew, planned.segmentation))
     return Built(one, planned.segmentation, folder, ifcopenshell.open(str(folder / "cut.ifc")))
 
