@@ -11,8 +11,9 @@ import math
 import numpy as np
 from scipy.sparse import csr_array
 
+from aag_cad.geometry.surface import dot
 from aag_cad.units import Floats, Ints
-from aag_cad.web.stars import coplanar, points_of, row_dot, stars, through_normal
+from aag_cad.web.stars import coplanar, points_of, stars, through_normal
 from aag_cad.web.terms import Term, stacked, term, vertex_numbers
 from aag_cad.web.web import Web
 
@@ -27,7 +28,7 @@ def a_net(web: Web) -> Term:
     for corner in star.corners[:2]:
         edge = x[corner] - x[star.centre]
         derivatives = [(corner, star.normal), (star.centre, -star.normal), *through_normal(star, edge)]
-        parts.append(term(row_dot(star.normal, edge), derivatives, unknowns))
+        parts.append(term(dot(star.normal, edge), derivatives, unknowns))
     return stacked(parts)
 
 
@@ -52,13 +53,13 @@ def constant_angle(web: Web, angle: float) -> Term:
     sums = (units[0] - units[2], units[1] - units[3])
     norms = [np.linalg.norm(s, axis=1)[:, None] for s in sums]
     t1, t2 = (s / norm for s, norm in zip(sums, norms, strict=True))
-    cosine = row_dot(t1, t2)
+    cosine = dot(t1, t2)
     by_sum = ((t2 - cosine[:, None] * t1) / norms[0], (t1 - cosine[:, None] * t2) / norms[1])
     derivatives: list[tuple[Ints, Floats]] = []
     total = np.zeros_like(t1)
     for k, corner in enumerate(star.corners):
         by_unit = by_sum[k % 2] * (1.0 if k < 2 else -1.0)
-        by_edge = (by_unit - row_dot(by_unit, units[k])[:, None] * units[k]) / lengths[k]
+        by_edge = (by_unit - dot(by_unit, units[k])[:, None] * units[k]) / lengths[k]
         derivatives.append((corner, by_edge))
         total = total + by_edge
     derivatives.append((star.centre, -total))

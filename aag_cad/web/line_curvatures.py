@@ -9,8 +9,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 from scipy.sparse import csr_array
 
+from aag_cad.geometry.surface import dot
 from aag_cad.units import Floats, Ints
-from aag_cad.web.stars import Star, points_of, row_dot, stars, through_normal
+from aag_cad.web.stars import Star, points_of, stars, through_normal
 from aag_cad.web.terms import Term, term, vertex_numbers
 from aag_cad.web.web import Web
 
@@ -44,15 +45,15 @@ def _turning(web: Web, star: Star, line: Line, normal_part: bool) -> Term:
         side = np.cross(chord, star.normal)
         wide = np.linalg.norm(side, axis=1)[:, None]
         axis = side / wide
-        by_side = (by_axis - row_dot(by_axis, axis)[:, None] * axis) / wide
+        by_side = (by_axis - dot(by_axis, axis)[:, None] * axis) / wide
         by_normal, by_chord = np.cross(by_side, chord), np.cross(star.normal, by_side)
     else:
         axis, by_normal, by_chord = star.normal, by_axis, np.zeros_like(chord)
-    values = row_dot(axis, by_axis)
+    values = dot(axis, by_axis)
     by_a, by_c = 2.0 * np.cross(c, axis) / length, 2.0 * np.cross(axis, a) / length
     by_chord = by_chord - values[:, None] * chord / length**2
-    by_a = (by_a - row_dot(by_a, a)[:, None] * a) / length_a + by_chord
-    by_c = (by_c - row_dot(by_c, c)[:, None] * c) / length_c - by_chord
+    by_a = (by_a - dot(by_a, a)[:, None] * a) / length_a + by_chord
+    by_c = (by_c - dot(by_c, c)[:, None] * c) / length_c - by_chord
     derivatives: Derivatives = [(ahead, by_a), (behind, by_c), (star.centre, -by_a - by_c)]
     found = term(values, [*derivatives, *through_normal(star, by_normal)], web.vertices.size)
     # The energies' normal is opposite to that of the surface and of the quality report, which give the sign here.
@@ -106,14 +107,14 @@ def geodesic_torsion(web: Web, line: Line) -> Term:
     edge = x[above.centre] - x[below.centre]
     length = np.linalg.norm(edge, axis=1)[:, None]
     along, n, m = edge / length, below.normal, above.normal
-    n_along, m_along = row_dot(n, along)[:, None], row_dot(m, along)[:, None]
-    sine, cosine = row_dot(along, np.cross(n, m))[:, None], row_dot(n, m)[:, None] - n_along * m_along
+    n_along, m_along = dot(n, along)[:, None], dot(m, along)[:, None]
+    sine, cosine = dot(along, np.cross(n, m))[:, None], dot(n, m)[:, None] - n_along * m_along
     torsion = np.arctan2(sine, cosine) / length
     by_sine, by_cosine = (part / (sine**2 + cosine**2) / length for part in (cosine, -sine))
     by_n = by_sine * np.cross(m, along) + by_cosine * (m - m_along * along)
     by_m = by_sine * np.cross(along, n) + by_cosine * (n - n_along * along)
     by_along = by_sine * np.cross(n, m) - by_cosine * (m_along * n + n_along * m)
-    by_edge = (by_along - row_dot(by_along, along)[:, None] * along) / length - torsion * along / length
+    by_edge = (by_along - dot(by_along, along)[:, None] * along) / length - torsion * along / length
     derivatives: Derivatives = [(above.centre, by_edge), (below.centre, -by_edge)]
     derivatives += [*through_normal(below, by_n), *through_normal(above, by_m)]
     return term(torsion[:, 0], derivatives, web.vertices.size)

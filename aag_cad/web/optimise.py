@@ -74,20 +74,11 @@ def mean_edge(vertices: Floats) -> float:
 
 def _scaled(goals: Goals, factor: float) -> Goals:
     """Return goals with all lengths multiplied by a factor."""
-
-    def length(value: float | None) -> float | None:
-        return None if value is None else value * factor
-
+    wishes = {name: getattr(goals, name) for name in ("height", "span", "min_radius")}
+    lengths = {name: wish * factor for name, wish in wishes.items() if wish is not None}
     points = tuple(replace(p, point=tuple(x * factor for x in p.point)) for p in goals.points)  # type: ignore[arg-type]
     turn = None if goals.max_twist is None else goals.max_twist / factor
-    return replace(
-        goals,
-        height=length(goals.height),
-        span=length(goals.span),
-        points=points,
-        min_radius=length(goals.min_radius),
-        max_twist=turn,
-    )
+    return replace(goals, points=points, max_twist=turn, **lengths)
 
 
 def _weighted(item: Term, weight: float) -> Term:
@@ -246,14 +237,16 @@ def _limits(web: Web, goals: Goals) -> list[tuple[str, float, float]]:
     if misses:
         limits.append(("distance of held points per edge", max(misses), SIZE))
     if goals.min_radius is not None:
-        limits.append(("curvature over that of the smallest radius", goals.min_radius * _bending(web), 1.0 + SIZE))
+        limits.append(
+            (
+                "curvature over that of the smallest radius",
+                goals.min_radius * float(largest_bending(web).max()),
+                1.0 + SIZE,
+            )
+        )
     if goals.max_twist is not None:
         limits.append(("twist over the largest", float(largest_twist(web).max()) / goals.max_twist, 1.0 + SIZE))
     return limits
-
-
-def _bending(web: Web) -> float:
-    return float(largest_bending(web).max())
 
 
 def _verdict(web: Web, before: WebQuality, after: WebQuality, goals: Goals) -> tuple[Reason, str]:

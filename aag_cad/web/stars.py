@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from aag_cad.geometry.surface import dot
 from aag_cad.units import Floats, Ints
 from aag_cad.web.terms import Term, term, vertex_numbers
 from aag_cad.web.web import Web
@@ -26,11 +27,6 @@ def points_of(web: Web) -> Floats:
     return web.vertices.reshape(-1, 3)
 
 
-def row_dot(a: Floats, b: Floats) -> Floats:
-    """Return the row-wise scalar product (m,) of two (m, 3) arrays."""
-    return np.asarray(np.einsum("ij,ij->i", a, b))
-
-
 def stars(web: Web) -> Star:
     """Return the stars of all inner vertices of a web, row by row."""
     number = vertex_numbers(*web.vertices.shape[:2])
@@ -46,7 +42,7 @@ def stars(web: Web) -> Star:
 
 def through_normal(star: Star, towards: Floats) -> list[tuple[Ints, Floats]]:
     """Return the derivatives of n . towards by the corners, with ``towards`` (m, 3) held."""
-    g = (towards - row_dot(towards, star.normal)[:, None] * star.normal) / star.area[:, None]
+    g = (towards - dot(towards, star.normal)[:, None] * star.normal) / star.area[:, None]
     by_u, by_w = np.cross(star.w, g), np.cross(g, star.u)
     first, second, third, fourth = star.corners
     return [(first, by_u), (third, -by_u), (second, by_w), (fourth, -by_w)]
@@ -60,9 +56,9 @@ def coplanar(web: Web, star: Star, ahead: Ints, behind: Ints) -> Term:
     a, c = a / length_a, c / length_c
     cross = np.cross(a, c)
     by_a, by_c = np.cross(c, star.normal), np.cross(star.normal, a)
-    by_a = (by_a - row_dot(by_a, a)[:, None] * a) / length_a
-    by_c = (by_c - row_dot(by_c, c)[:, None] * c) / length_c
+    by_a = (by_a - dot(by_a, a)[:, None] * a) / length_a
+    by_c = (by_c - dot(by_c, c)[:, None] * c) / length_c
     derivatives = [
         (ahead, by_a), (behind, by_c), (star.centre, -by_a - by_c), *through_normal(star, cross),
     ]  # fmt: skip
-    return term(row_dot(star.normal, cross), derivatives, web.vertices.size)
+    return term(dot(star.normal, cross), derivatives, web.vertices.size)

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from aag_cad.geometry.surface import dot
 from aag_cad.units import Floats, Ints
 from aag_cad.web.energies import a_net, geodesic
 from aag_cad.web.line_curvatures import Derivatives
-from aag_cad.web.stars import Star, coplanar, points_of, row_dot, stars, through_normal
+from aag_cad.web.stars import Star, coplanar, points_of, stars, through_normal
 from aag_cad.web.terms import Term, stacked, term, vertex_numbers
 from aag_cad.web.web import Web
 
@@ -23,7 +24,7 @@ def star_planarity(web: Web) -> Floats:
     star, x = stars(web), points_of(web)
     edges = [x[corner] - x[star.centre] for corner in star.corners]
     mean_edge = float(np.mean([np.linalg.norm(edge, axis=1).mean() for edge in edges]))
-    largest = np.max([np.abs(row_dot(star.normal, edge)) for edge in edges], axis=0)
+    largest = np.max([np.abs(dot(star.normal, edge)) for edge in edges], axis=0)
     return np.asarray(largest.reshape(web.vertices.shape[0] - 2, web.vertices.shape[1] - 2) / mean_edge)
 
 
@@ -46,9 +47,9 @@ def g_net(web: Web) -> Term:
         for k, by_unit in enumerate((two, one, -four, -three)):
             place = (first + k) % 4
             along = unit[place]
-            by_edge = (by_unit - row_dot(by_unit, along)[:, None] * along) / lengths[place]
+            by_edge = (by_unit - dot(by_unit, along)[:, None] * along) / lengths[place]
             derivatives += [(around[place], by_edge), (centre, -by_edge)]
-        parts.append(term(row_dot(one, two) - row_dot(three, four), derivatives, web.vertices.size))
+        parts.append(term(dot(one, two) - dot(three, four), derivatives, web.vertices.size))
     return stacked(parts)
 
 
@@ -129,7 +130,7 @@ def mesh_a_net(mesh: AsymptoticMesh) -> Term:
     for corner in star.corners[:2]:
         edge = x[corner] - x[star.centre]
         derivatives = [(corner, star.normal), (star.centre, -star.normal), *through_normal(star, edge)]
-        parts.append(term(row_dot(star.normal, edge), derivatives, mesh.vertices.size))
+        parts.append(term(dot(star.normal, edge), derivatives, mesh.vertices.size))
     return stacked(parts)
 
 
