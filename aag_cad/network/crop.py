@@ -1,7 +1,6 @@
 """Which crossings become joints, and where each plank ends."""
 
 import math
-from collections.abc import Iterable
 
 import numpy as np
 from scipy.optimize import brentq
@@ -17,14 +16,6 @@ from aag_cad.units import Floats
 
 _RANK = {"boundary": 0, "AA": 1, "AG": 2}
 SCREW_END_DISTANCE = 7.0
-
-
-def _station_on(crossing: Crossing, curve: CurveId) -> float:
-    return crossing.stations[crossing.curves.index(curve)]
-
-
-def _crossings_on(crossings: Iterable[Crossing], curve: CurveId) -> list[Crossing]:
-    return sorted((c for c in crossings if curve in c.curves), key=lambda c: _station_on(c, curve))
 
 
 def geodesic_extent(design: Design, curves: dict[CurveId, FramedCurve], stops: list[Crossing]) -> tuple[float, float]:
@@ -77,18 +68,17 @@ def kept_crossings(design: Design, curves: dict[CurveId, FramedCurve], crossings
     """
     extents = _geodesic_extents(design, curves, crossings)
     reach = SCREW_END_DISTANCE * design.joints.screw_diameter
-    kept: set[Crossing] = set()
-    for c in crossings:
-        if c.kind == "AG":
-            low, high = extents[c.curves[1]]
-            if not low + reach <= c.stations[1] <= high - reach:
-                continue
-        kept.add(c)
+
+    def held(c: Crossing) -> bool:
+        low, high = extents[c.curves[1]]
+        return low + reach <= c.stations[1] <= high - reach
+
+    kept = {c for c in crossings if c.kind != "AG" or held(c)}
     for beam in (name for name in curves if name.family in BEAMS):
-        ranked = sorted(_crossings_on(kept, beam), key=lambda c: (_RANK[c.kind], _station_on(c, beam)))
+        on_beam = [c for c in kept if beam in c.curves]
         placed: list[Crossing] = []
-        for c in ranked:
-            near = [p for p in placed if abs(_station_on(c, beam) - _station_on(p, beam)) < _spacing(design, c, p)]
+        for c in sorted(on_beam, key=lambda c: (_RANK[c.kind], c.station_on(beam))):
+            near = [p for p in placed if abs(c.station_on(beam) - p.station_on(beam)) < _spacing(design, c, p)]
             if not near:
                 placed.append(c)
                 continue
@@ -163,8 +153,8 @@ def trimmed_curves(design: Design, curves: dict[CurveId, FramedCurve], crossings
         elif name.family in EDGES:
             start, end = 0.0, _crown_station(design, curve) if name in ridges else curve.length
         else:
-            joints = [_station_on(c, name) for c in _crossings_on(crossings, name)]
-            start = joints[0] - _free_overhang(design, curve, name.family, joints[0], -1.0)
-            end = joints[-1] + _free_overhang(design, curve, name.family, joints[-1], 1.0)
+            joints = [c.station_on(name) for c in crossings if name in c.curves]
+            start = min(joints) - _free_overhang(design, curve, name.family, min(joints), -1.0)
+            end = max(joints) + _free_overhang(design, curve, name.family, max(joints), 1.0)
         trimmed.append(NetworkCurve(name, curve, float(start), float(end)))
     return trimmed

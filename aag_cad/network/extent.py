@@ -57,12 +57,7 @@ def shell_extent(design: Design, chart: Chart, network: CurveNetwork) -> ShellEx
     twists: dict[Family, float] = {}
     for item in network.curves:
         family = item.id.family
-        joints = [
-            station
-            for crossing in network.crossings
-            for curve, station in zip(crossing.curves, crossing.stations, strict=True)
-            if curve == item.id
-        ]
+        joints = [crossing.station_on(item.id) for crossing in network.crossings if item.id in crossing.curves]
         stations = np.linspace(min(joints), max(joints), 400)
         curvatures = curvatures_at(item.curve, stations)
         weak = curvatures.geodesic if FAMILIES[family].upright else curvatures.normal

@@ -50,6 +50,10 @@ class Crossing:
     point: Vector
     normal: Vector
 
+    def station_on(self, curve: CurveId) -> float:
+        """Return the station on one of its curves."""
+        return self.stations[self.curves.index(curve)]
+
 
 @dataclass(frozen=True)
 class CurveNetwork:

@@ -29,7 +29,7 @@ _MOST_POLYLINES, _MOST_POINTS = 500, 5000
 _SHARPEST_KINK = math.radians(30.0)
 _NORMAL_LEAN = math.radians(15.0)
 _SAME_SIDE = math.radians(30.0)
-_PASS_BY = 100.0
+_TOLERANCE, _PASS_BY = 5.0, 100.0
 _END_SLACK = 1.0
 _FLATTEST_SINE = 0.02
 
@@ -50,23 +50,23 @@ def polylines_json(network: CurveNetwork) -> str:
     return json.dumps(whole, allow_nan=False, separators=(",", ":")).replace('{"start"', '\n{"start"') + "\n"
 
 
-def read_polylines(text: str, source: str, tolerance: float = 5.0) -> CurveNetwork:
+def read_polylines(text: str, source: str) -> CurveNetwork:
     """Return the network of a JSON text; ``source`` names the file in errors.
 
-    Curves are splines through the points; two of them cross where they come within ``tolerance`` mm. FileError with the
-    family, the polyline and what is wrong; NetworkError where the curves do not make one network.
+    Curves are splines through the points; two of them cross where they come within 5 mm. FileError with the family, the
+    polyline and what is wrong; NetworkError where the curves do not make one network.
     """
     items: list[NetworkCurve] = []
     for family, polylines in _families(text, source).items():
         for number, data in enumerate(polylines, start=1):
             items.append(_network_curve(CurveId(family, number), data, f"{source}: {family} polyline {number}"))
-    crossings = _crossings(items, source, tolerance)
+    crossings = _crossings(items, source)
     joined = {curve for crossing in crossings for curve in crossing.curves}
     for item in items:
         if item.id not in joined:
             raise NetworkError(
-                f"{source}: {_name(item.id)} comes within {tolerance:g} mm of no curve of another family; leave it out "
-                "or lengthen it to reach its neighbours"
+                f"{source}: {_name(item.id)} comes within {_TOLERANCE:g} mm of no curve of another family; leave it "
+                "out or lengthen it to reach its neighbours"
             )
     return CurveNetwork(tuple(sorted(items, key=lambda item: item.id)), tuple(crossings))
 
@@ -226,7 +226,7 @@ def _closest(a: FramedCurve, b: FramedCurve) -> Iterator[tuple[float, float]]:
             yield float(np.clip(at[0], 0.0, a.length)), float(np.clip(at[1], 0.0, b.length))
 
 
-def _crossings(items: list[NetworkCurve], source: str, tolerance: float) -> list[Crossing]:
+def _crossings(items: list[NetworkCurve], source: str) -> list[Crossing]:
     """Return all crossings in space, sorted by kind and place.
 
     G curves go on to the edge planks that cut them off; everywhere else a crossing counts where both planks lie.
@@ -239,33 +239,25 @@ def _crossings(items: list[NetworkCurve], source: str, tolerance: float) -> list
                 item.start - _END_SLACK <= s <= item.end + _END_SLACK for item, s in zip((a, b), stations, strict=True)
             )
             if on_planks or kind in ("foot", "ridge"):
-                crossing = _crossing(kind, a, b, stations, source, tolerance)
-                crossings += [crossing] if crossing else []
+                crossings += _crossing(kind, a, b, stations, source)
     return sorted(crossings, key=lambda c: (c.kind, c.curves, c.stations))
 
 
 def _crossing(
-    kind: CrossingKind | None,
-    a: NetworkCurve,
-    b: NetworkCurve,
-    stations: tuple[float, float],
-    source: str,
-    tolerance: float,
-) -> Crossing | None:
-    """Return the crossing at a closest approach, or None where the curves pass far from each other."""
+    kind: CrossingKind | None, a: NetworkCurve, b: NetworkCurve, stations: tuple[float, float], source: str
+) -> list[Crossing]:
+    """Return the crossing at a closest approach, or none where the curves pass far from each other."""
     first, second = (frames_at(item.curve, np.array([s])) for item, s in zip((a, b), stations, strict=True))
     gap = float(np.linalg.norm(first.point - second.point))
     pair = f"{source}: {_name(a.id)} and {_name(b.id)}"
-    if gap > max(tolerance, _PASS_BY):
-        return None
+    if gap > _PASS_BY or (kind is None and a.id.family in EDGES):
+        return []
     where = "({:.0f}, {:.0f}, {:.0f})".format(*first.point[0])
     if kind is None:
-        if a.id.family in EDGES:
-            return None
         raise NetworkError(f"{pair} cross near {where}; curves of one family never do: sort them into A1, A2 and G")
-    if gap > tolerance:
+    if gap > _TOLERANCE:
         raise NetworkError(
-            f"{pair} pass each other at {gap:.1f} mm near {where}, at most {tolerance:g} mm are a crossing; pull the "
+            f"{pair} pass each other at {gap:.1f} mm near {where}, at most {_TOLERANCE:g} mm are a crossing; pull the "
             "curves onto one surface"
         )
     turn = float(_angles(first.normal, second.normal)[0])
@@ -276,4 +268,4 @@ def _crossing(
         )
     middle = (first.point[0] + second.point[0]) / 2.0
     normal = unit(first.normal + second.normal)[0]
-    return Crossing(kind, (a.id, b.id), stations, vector(middle), vector(normal))
+    return [Crossing(kind, (a.id, b.id), stations, vector(middle), vector(normal))]

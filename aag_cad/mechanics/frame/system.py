@@ -119,27 +119,25 @@ def frame_system(model: FrameModel) -> FrameSystem:
     return FrameSystem(model, index, points, arrays, global_stiffness(arrays), transform, free)
 
 
+def _assembled(pieces: Floats, dofs: Ints, nodes: int) -> csr_array:
+    """Return the sum (6 n, 6 n) of matrices (m, k, k) against the displacements ``dofs`` (m, k) of n nodes."""
+    k = dofs.shape[1]
+    rows, columns = np.repeat(dofs, k, axis=1).ravel(), np.tile(dofs, (1, k)).ravel()
+    return csr_array(coo_array((pieces.ravel(), (rows, columns)), shape=(6 * nodes, 6 * nodes)))
+
+
 def scattered(system: FrameSystem, chosen: Ints) -> csr_array:
     """Return the stiffness (6 n, 6 n) of the elements at places ``chosen`` (k,) against all displacements."""
     dofs = (6 * system.arrays.nodes[chosen][:, :, None] + np.arange(6)).reshape(-1, 12)
-    rows, columns = np.repeat(dofs, 12, axis=1).ravel(), np.tile(dofs, (1, 12)).ravel()
-    size = 6 * len(system.points)
-    return csr_array(coo_array((system.pieces[chosen].ravel(), (rows, columns)), shape=(size, size)))
+    return _assembled(system.pieces[chosen], dofs, len(system.points))
 
 
 def _spring_stiffness(springs: tuple[Spring, ...], index: dict[str, int]) -> csr_array:
-    rows, columns, values = [], [], []
-    for spring in springs:
-        along = _unit(spring.direction, spring.node)
-        dofs = 6 * index[spring.node] + 3 * int(spring.turning) + np.arange(3)
-        rows.append(np.repeat(dofs, 3))
-        columns.append(np.tile(dofs, 3))
-        values.append(spring.stiffness * np.outer(along, along).ravel())
-    size = 6 * len(index)
-    if not springs:
-        return csr_array((size, size))
-    joined = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-    return csr_array(coo_array(joined, shape=(size, size)))
+    along = np.array([_unit(spring.direction, spring.node) for spring in springs]).reshape(-1, 3)
+    stiffness = np.array([spring.stiffness for spring in springs])
+    first = np.array([6 * index[spring.node] + 3 * int(spring.turning) for spring in springs], dtype=np.int64)
+    pieces = stiffness[:, None, None] * (along[:, :, None] * along[:, None, :])
+    return _assembled(pieces, first[:, None] + np.arange(3), len(index))
 
 
 def against_unknowns(system: FrameSystem, matrix: csr_array) -> csc_array:
