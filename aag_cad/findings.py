@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Any, Literal, TypeAlias
 
-from aag_cad.language import Language, Sentence, printed
+from aag_cad.language import Language, Sentence, figure, printed, say
 
 Severity: TypeAlias = Literal["error", "warning", "note"]
 
@@ -36,10 +36,12 @@ class Finding:
 
 def finding_row(finding: Finding, language: Language = "en") -> dict[str, Any]:
     """Return a finding as plain data in a language: its fields, and ``text``, all of it in one line."""
-    what, remedy = printed(finding.what, language), printed(finding.remedy, language)
     unit = f" {finding.unit}" if finding.unit else ""
-    figures = f"{finding.found:.4g}{unit}, allowed {finding.allowed:.4g}{unit}"
-    line = f"{finding.mark}: {what} {figures}; {remedy}"
+    found, allowed = (figure(f"{value:.4g}", language) + unit for value in (finding.found, finding.allowed))
+    what, remedy = printed(finding.what, language), printed(finding.remedy, language)
+    line = say(
+        language, "booklet.findings.line", mark=finding.mark, what=what, found=found, allowed=allowed, remedy=remedy
+    )
     return {**asdict(finding), "what": what, "remedy": remedy, "text": line}
 
 
