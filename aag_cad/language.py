@@ -67,12 +67,10 @@ def _entry(language: Language, key: str) -> Any:
 
 def has_words(key: str) -> bool:
     """Return whether a table has words under a key, in any language."""
-    name, *path = key.split(".")
-    found: Any = words_table(name)
-    for part in path:
-        if part not in found:
-            return False
-        found = found[part]
+    try:
+        _entry(LANGUAGES[0], key)
+    except KeyError:
+        return False
     return True
 
 

@@ -16,15 +16,15 @@ from aag_cad.export.ifc.options import IfcOptions
 from aag_cad.export.ifc.schedule import PlannedWork
 from aag_cad.export.office.overview import write_overview
 from aag_cad.export.office.plan_files import PlanDossier, write_plan_output
-from aag_cad.export.office.purchases import write_cutting, write_purchases
-from aag_cad.export.office.tables import write_checks_table, write_holes_table, write_parts_table
+from aag_cad.export.office.purchases import write_purchases
+from aag_cad.export.office.tables import write_tables
 from aag_cad.export.workshop.btlx import write_btlx
 from aag_cad.export.workshop.drill_templates import write_templates
 from aag_cad.export.workshop.dxf import write_blank_dxfs
 from aag_cad.export.workshop.facade_patterns import write_facade_table, write_flat_patterns
 from aag_cad.export.workshop.labels import write_labels
 from aag_cad.export.workshop.passports import write_passports
-from aag_cad.export.workshop.prefabrication import write_drilling, write_prefabrication
+from aag_cad.export.workshop.prefabrication import write_prefabrication
 from aag_cad.files import write_bytes, write_text
 from aag_cad.model import Model
 from aag_cad.network.polylines import polylines_json
@@ -62,17 +62,9 @@ def _write_ifc(dossier: Dossier, folder: Path) -> None:
     write_ifc(gridshell, folder / f"{gridshell.name}.ifc", work, options)
 
 
-def _write_tables(dossier: Dossier, folder: Path) -> None:
-    write_parts_table(dossier.gridshell, folder / "tables" / "parts.csv")
-    write_holes_table(dossier.gridshell, folder / "tables" / "holes.csv")
-    write_checks_table(dossier.gridshell, folder / "tables" / "checks.csv")
-
-
 def _write_shop(dossier: Dossier, folder: Path) -> None:
-    write_prefabrication(dossier.gridshell, folder / "tables" / "prefabrication.csv")
-    write_drilling(dossier.gridshell, folder / "tables" / "drilling.csv")
-    write_purchases(dossier.purchases, folder / "tables" / "purchases.csv")
-    write_cutting(dossier.purchases, folder / "tables" / "cutting.csv")
+    write_prefabrication(dossier.gridshell, folder / "tables")
+    write_purchases(dossier.purchases, folder / "tables")
 
 
 def _write_passports(dossier: Dossier, folder: Path) -> None:
@@ -106,7 +98,7 @@ OUTPUTS: dict[str, Writer] = {
     "step": lambda dossier, to: write_step(dossier.gridshell, to / f"{dossier.gridshell.name}.step"),
     "ifc": _write_ifc,
     "glb": lambda dossier, to: write_glb(dossier.gridshell, to / f"{dossier.gridshell.name}.glb"),
-    "tables": _write_tables,
+    "tables": lambda dossier, to: write_tables(dossier.gridshell, to / "tables"),
     "shop": _write_shop,
     "blanks": lambda dossier, to: write_blank_dxfs(dossier.gridshell, to / "blanks"),
     "templates": lambda dossier, to: write_templates(

@@ -1,5 +1,6 @@
 """The whole way in one place: design -> surface -> web -> curves -> parts -> findings and plan -> files."""
 
+import json
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -23,7 +24,7 @@ from aag_cad.errors import DesignError
 from aag_cad.export.ifc.options import IfcOptions, require_known
 from aag_cad.export.office.optimise_report import write_report
 from aag_cad.export.office.plan_files import gridshell_dossier
-from aag_cad.export.office.summary import summary_of, write_summary
+from aag_cad.export.office.summary import summary_of
 from aag_cad.files import publishing, read_text, sizes_below, write_bytes, write_text
 from aag_cad.findings import Finding, worst_first
 from aag_cad.geometry.profiles import ArcProfile, CrpcProfile, HyperboloidProfile, Profile, SplineProfile
@@ -232,5 +233,5 @@ def build(
         ends = [start for _, start in begun[1:]] + [time.perf_counter()]
         seconds = {stage: end - start for (stage, start), end in zip(begun, ends, strict=True)}
         summary = summary_of(model, findings, planned.plan, purchases, sizes_below(staging), seconds, printed)
-        write_summary(summary, staging / "summary.json")
+        write_text(staging / "summary.json", json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
     return Build(model, findings, planned, summary)

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
@@ -83,6 +83,10 @@ class HyperboloidProfile:
     def from_asymptotic(self, s: Floats) -> Floats:
         """Return u = 2 artanh tan(s/2), for |s| < pi/2."""
         return 2.0 * np.arctanh(np.tan(s / 2.0))
+
+
+# The profiles that know their asymptotic coordinate in closed form.
+ClosedForm: TypeAlias = CrpcProfile | HyperboloidProfile
 
 
 @dataclass(frozen=True)

@@ -3,31 +3,17 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
 
 from aag_cad.errors import SurfaceError
-from aag_cad.geometry.profiles import Profile
+from aag_cad.geometry.profiles import ClosedForm, Profile
 from aag_cad.geometry.surface import Jet
 from aag_cad.units import Floats
 
 _PANELS = 400
 _GAUSS = np.polynomial.legendre.leggauss(8)
-
-
-@runtime_checkable
-class ClosedFormAsymptotic(Protocol):
-    """A profile that knows its asymptotic coordinate in closed form."""
-
-    def asymptotic(self, u: Floats) -> Floats:
-        """Return s at u."""
-        ...
-
-    def from_asymptotic(self, s: Floats) -> Floats:
-        """Return u at s."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +93,7 @@ class AsymptoticChart:
                 f"surface: the web asks for the asymptotic coordinate {float(np.max(np.abs(s))):.3f}, the meridian "
                 f"ends at [{low:.3f}, {high:.3f}]; lengthen the meridian or lower the shell"
             )
-        if isinstance(profile, ClosedFormAsymptotic):
+        if isinstance(profile, ClosedForm):
             return profile.from_asymptotic(s)
         forward, inverse = self._splines
         u = np.asarray(inverse(s))
@@ -120,7 +106,7 @@ class AsymptoticChart:
     def domain(self) -> tuple[float, float]:
         """The range of s."""
         profile = self.surface.profile
-        if isinstance(profile, ClosedFormAsymptotic):
+        if isinstance(profile, ClosedForm):
             low, high = profile.asymptotic(np.array(profile.domain))
             return float(low), float(high)
         inverse = self._splines[1]

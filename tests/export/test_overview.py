@@ -7,9 +7,10 @@ from xml.etree import ElementTree
 import pytest
 
 from aag_cad.errors import FileError
-from aag_cad.export.office.overview import PIXELS_WIDE, overview_svg, write_overview
+from aag_cad.export.office.overview import BACKGROUND, PIXELS_WIDE, write_overview
 from aag_cad.parts.model import Gridshell
 from aag_cad.typesetting import png_of
+from assembly.drawing.perspective import perspective_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -43,7 +44,7 @@ def test_the_png_has_the_width_asked_for_and_the_shape_of_the_svg(folder: Path) 
 
 
 def test_the_same_gridshell_gives_the_same_picture(gridshell: Gridshell, folder: Path) -> None:
-    svg = overview_svg(gridshell)
+    svg = perspective_svg(gridshell, background=BACKGROUND)
     assert svg == (folder / "vault.svg").read_text(encoding="utf-8")
     assert png_of(svg, PIXELS_WIDE) == (folder / "vault.png").read_bytes()
 

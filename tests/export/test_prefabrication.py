@@ -12,7 +12,6 @@ from aag_cad.errors import FileError
 from aag_cad.export.workshop.prefabrication import (
     DRILLING_HEADER,
     PREFABRICATION_HEADER,
-    write_drilling,
     write_prefabrication,
 )
 from aag_cad.geometry.framed import curvatures_at
@@ -22,8 +21,7 @@ from aag_cad.parts.model import Gridshell
 @pytest.fixture(scope="module")
 def folder(gridshell: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("prefabrication")
-    write_prefabrication(gridshell, folder / "prefabrication.csv")
-    write_drilling(gridshell, folder / "drilling.csv")
+    write_prefabrication(gridshell, folder)
     return folder
 
 
@@ -116,11 +114,12 @@ def test_over_drilling_makes_the_difference_grow_by_a_27th(folder: Path) -> None
 
 
 def test_the_same_gridshell_gives_the_same_bytes(gridshell: Gridshell, folder: Path, tmp_path: Path) -> None:
-    write_prefabrication(gridshell, tmp_path / "prefabrication.csv")
-    assert (tmp_path / "prefabrication.csv").read_bytes() == (folder / "prefabrication.csv").read_bytes()
+    write_prefabrication(gridshell, tmp_path)
+    for name in ("prefabrication.csv", "drilling.csv"):
+        assert (tmp_path / name).read_bytes() == (folder / name).read_bytes()
 
 
 def test_a_table_that_cannot_be_written_names_its_file(gridshell: Gridshell, tmp_path: Path) -> None:
     (tmp_path / "tables").write_text("a file, not a folder")
-    with pytest.raises(FileError, match=r"drilling\.csv: cannot be written"):
-        write_drilling(gridshell, tmp_path / "tables" / "drilling.csv")
+    with pytest.raises(FileError, match=r"prefabrication\.csv: cannot be written"):
+        write_prefabrication(gridshell, tmp_path / "tables")

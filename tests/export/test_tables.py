@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from aag_cad.design import Design
-from aag_cad.export.office.tables import HOLES_HEADER, PARTS_HEADER, write_holes_table, write_parts_table
+from aag_cad.export.office.tables import HOLES_HEADER, PARTS_HEADER, write_tables
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.parts.quantities import largest_twist, mass, smallest_radius
 from aag_cad.pipeline import gridshell_of
@@ -23,8 +23,7 @@ def vault(design: Design) -> Gridshell:
 @pytest.fixture(scope="module")
 def folder(vault: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("tables")
-    write_parts_table(vault, folder / "parts.csv")
-    write_holes_table(vault, folder / "holes.csv")
+    write_tables(vault, folder)
     return folder
 
 
@@ -139,7 +138,6 @@ def test_no_figure_is_printed_as_negative_zero(folder: Path) -> None:
 
 
 def test_the_same_gridshell_gives_the_same_bytes(vault: Gridshell, folder: Path, tmp_path: Path) -> None:
-    write_parts_table(vault, tmp_path / "parts.csv")
-    write_holes_table(vault, tmp_path / "holes.csv")
-    for name in ("parts.csv", "holes.csv"):
+    write_tables(vault, tmp_path)
+    for name in ("parts.csv", "holes.csv", "checks.csv"):
         assert (tmp_path / name).read_bytes() == (folder / name).read_bytes()

@@ -12,7 +12,6 @@ from aag_cad.design import Design
 from aag_cad.export.office.purchases import (
     CUTTING_HEADER,
     PURCHASES_HEADER,
-    write_cutting,
     write_purchases,
 )
 from aag_cad.parts.model import (
@@ -69,7 +68,7 @@ def test_every_joint_says_what_its_fasteners_are_for(purchases: Purchases) -> No
 def test_every_part_that_is_cut_stands_in_the_cutting_list_once(
     purchases: Purchases, gridshell: Gridshell, tmp_path: Path
 ) -> None:
-    write_cutting(purchases, tmp_path / "cutting.csv")
+    write_purchases(purchases, tmp_path)
     listed = rows(tmp_path / "cutting.csv")
     assert tuple(listed[0]) == CUTTING_HEADER
     kinds = Plank | Stud | CouplingBlock | Strap | Mullion | ClampingBar | Strip
@@ -107,10 +106,12 @@ def test_the_summary_is_plain_and_everything_cut_is_proven(purchases: Purchases)
 def test_the_purchase_list_is_read_back_and_the_same_each_time(
     purchases: Purchases, gridshell: Gridshell, design: Design, tmp_path: Path
 ) -> None:
-    write_purchases(purchases, tmp_path / "one.csv")
-    write_purchases(purchases_of(gridshell, design), tmp_path / "two.csv")
-    assert (tmp_path / "one.csv").read_bytes() == (tmp_path / "two.csv").read_bytes()
-    listed = rows(tmp_path / "one.csv")
+    one, two = tmp_path / "one", tmp_path / "two"
+    write_purchases(purchases, one)
+    write_purchases(purchases_of(gridshell, design), two)
+    for name in ("purchases.csv", "cutting.csv"):
+        assert (one / name).read_bytes() == (two / name).read_bytes()
+    listed = rows(one / "purchases.csv")
     assert tuple(listed[0]) == PURCHASES_HEADER
     assert len(listed) == len(purchases.lines)
     assert all(int(row["quantity"]) > 0 and float(row["mass_kg"]) > 0.0 for row in listed)

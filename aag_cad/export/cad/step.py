@@ -12,7 +12,7 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.TopoDS import TopoDS_Solid
 from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from aag_cad.export.cad.step_text import Header, kernel_settings, named, placement, step_bytes
+from aag_cad.export.cad.step_text import kernel_settings, named, placement, step_bytes
 from aag_cad.files import write_bytes
 from aag_cad.parts.forms import Frame
 from aag_cad.parts.index import index_of
@@ -22,22 +22,16 @@ from aag_cad.parts.products import part_frame, product_name
 from aag_cad.solids.products import product_solids
 
 
-def write_step(
-    gridshell: Gridshell,
-    path: str | os.PathLike[str],
-    solids: Mapping[str, TopoDS_Solid] | None = None,
-    header: Header | None = None,
-) -> None:
+def write_step(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
     """Write the gridshell as STEP AP242 in mm, vault > shell > coupled beam > part; the same model gives equal bytes.
 
-    Equal products are one product in the file, each placed under its mark. ``solids`` holds their shapes by product
-    key, as ``aag_cad.solids.products.product_solids`` gives them; they are built here if it is left out. Colours stand
-    in ``COLOUR_RGB`` as sRGB numbers, which readers show as they are; the kernel itself reckons with linear ones.
+    Equal products are one product in the file, each placed under its mark. Colours stand in ``COLOUR_RGB`` as sRGB
+    numbers, which readers show as they are; the kernel itself reckons with linear ones.
     SolidError names the mark whose solid is invalid; FileError if the file cannot be written.
     """
-    shapes = product_solids(gridshell) if solids is None else solids
+    solids = product_solids(gridshell)
     with kernel_settings():
-        data = step_bytes(_document(gridshell, shapes), gridshell.name, "Timber gridshell, formed planks", header)
+        data = step_bytes(_document(gridshell, solids), gridshell.name, "Timber gridshell, formed planks")
     write_bytes(path, data)
 
 

@@ -9,7 +9,7 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from aag_cad.export.cad.step_text import Header, kernel_settings, named, placement, step_bytes
+from aag_cad.export.cad.step_text import kernel_settings, named, placement, step_bytes
 from aag_cad.families import FAMILIES
 from aag_cad.files import write_bytes
 from aag_cad.network.model import CurveNetwork, NetworkCurve
@@ -21,19 +21,14 @@ from aag_cad.web.interpolation import InterpolatedSurface
 _TOLERANCE = 1e-6
 
 
-def write_step_curves(
-    network: CurveNetwork,
-    surface: InterpolatedSurface | None,
-    path: str | os.PathLike[str],
-    header: Header | None = None,
-) -> None:
+def write_step_curves(network: CurveNetwork, surface: InterpolatedSurface | None, path: str | os.PathLike[str]) -> None:
     """Write a network in mm, in shell coordinates: an assembly with the surface, if given, and a group for each family.
 
     Edges run from ``start`` to ``end`` of their curve, by arc length, and are named ``A1-01`` and so on. Equal models
     give equal bytes. SolidError if the kernel refuses; FileError if the file cannot be written.
     """
     with kernel_settings():
-        data = step_bytes(_document(network, surface), "curves", "Curves and surface of a gridshell", header)
+        data = step_bytes(_document(network, surface), "curves", "Curves and surface of a gridshell")
     write_bytes(path, data)
 
 

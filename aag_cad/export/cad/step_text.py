@@ -4,7 +4,6 @@ import io
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf
@@ -24,6 +23,9 @@ from aag_cad import __version__
 from aag_cad.errors import SolidError
 from aag_cad.parts.forms import Frame
 
+_MAKER = "AAG toolkit"
+# A file must not change when nothing but the day has changed.
+_NO_CLOCK = "2000-01-01T00:00:00"
 _TEXT_SETTINGS = {"write.step.schema": "AP242DIS", "write.step.unit": "MM"}
 _NUMBER_SETTINGS = {"write.step.assembly": 1, "write.surfacecurve.mode": 0, "write.step.nonmanifold": 0}
 _TEXT = r"('(?:[^']|'')*')"
@@ -34,15 +36,6 @@ _FIRST_STYLE = re.compile(r"^#\d+ = MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REP
 _RECORD = re.compile(r"#(\d+) = (.*?);\s*$", re.MULTILINE | re.DOTALL)
 _NOT_ASCII = re.compile(r"[^\x00-\x7f]+")
 _REFERENCE = re.compile(r"#(\d+)")
-
-
-@dataclass(frozen=True)
-class Header:
-    """What the header of the file says of its origin; ``time`` (ISO 8601) is given, never read from a clock."""
-
-    author: str = "AAG toolkit"
-    organisation: str = "AAG toolkit"
-    time: str = "2000-01-01T00:00:00"
 
 
 def named(label: TDF_Label, name: str) -> None:
@@ -89,7 +82,7 @@ def kernel_settings() -> Iterator[None]:
             printer.SetTraceLevel(level)
 
 
-def step_bytes(document: TDocStd_Document, name: str, description: str, header: Header | None = None) -> bytes:
+def step_bytes(document: TDocStd_Document, name: str, description: str) -> bytes:
     """Return a document as the bytes of a STEP file that depend on the document alone; call it inside the settings.
 
     SolidError if the kernel cannot write it.
@@ -101,20 +94,20 @@ def step_bytes(document: TDocStd_Document, name: str, description: str, header: 
     writer.SetPropsMode(False)
     if not writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
         raise SolidError(f"{name}: the kernel cannot turn the solids into STEP; check each of them on its own")
-    _fill_header(writer, name, description, header or Header())
+    _fill_header(writer, name, description)
     stream = io.BytesIO()
     if writer.WriteStream(stream) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise SolidError(f"{name}: the kernel stopped while it wrote the STEP text; free some memory and write again")
     return _NOT_ASCII.sub(_directive, _neutral(stream.getvalue().decode("utf-8"))).encode("ascii")
 
 
-def _fill_header(writer: STEPCAFControl_Writer, name: str, description: str, header: Header) -> None:
+def _fill_header(writer: STEPCAFControl_Writer, name: str, description: str) -> None:
     made = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
     made.SetName(TCollection_HAsciiString(f"{name}.step"))
-    made.SetTimeStamp(TCollection_HAsciiString(header.time))
-    made.SetAuthorValue(1, TCollection_HAsciiString(header.author))
-    made.SetOrganizationValue(1, TCollection_HAsciiString(header.organisation))
-    made.SetOriginatingSystem(TCollection_HAsciiString(f"AAG toolkit {__version__}"))
+    made.SetTimeStamp(TCollection_HAsciiString(_NO_CLOCK))
+    made.SetAuthorValue(1, TCollection_HAsciiString(_MAKER))
+    made.SetOrganizationValue(1, TCollection_HAsciiString(_MAKER))
+    made.SetOriginatingSystem(TCollection_HAsciiString(f"{_MAKER} {__version__}"))
     made.SetAuthorisation(TCollection_HAsciiString("none"))
     made.SetDescriptionValue(1, TCollection_HAsciiString(description))
 

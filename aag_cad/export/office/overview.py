@@ -11,14 +11,8 @@ BACKGROUND = "#fdfcf9"
 PIXELS_WIDE = 1800
 
 
-def overview_svg(gridshell: Gridshell) -> str:
-    """Return the picture as SVG: all planks and studs in perspective, on a light ground."""
-    return perspective_svg(gridshell, background=BACKGROUND)
-
-
 def write_overview(gridshell: Gridshell, svg_path: str | os.PathLike[str], png_path: str | os.PathLike[str]) -> None:
-    """Write the picture as SVG and as PNG; FileError if a file cannot be written."""
-    svg = overview_svg(gridshell)
-    png = png_of(svg, PIXELS_WIDE)
+    """Write all planks and studs in perspective, on a light ground, as SVG and PNG; FileError if it cannot be."""
+    svg = perspective_svg(gridshell, background=BACKGROUND)
     write_text(svg_path, svg)
-    write_bytes(png_path, png)
+    write_bytes(png_path, png_of(svg, PIXELS_WIDE))

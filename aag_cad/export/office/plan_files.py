@@ -8,7 +8,6 @@ from typing import TypeAlias
 import networkx as nx
 
 from aag_cad.design_making import Crew
-from aag_cad.export.office.tables import write_locking_table, write_segment_tables
 from aag_cad.files import write_csv, write_text
 from aag_cad.findings import Finding, worst_first
 from aag_cad.language import Language
@@ -22,10 +21,11 @@ from assembly.booklet.graph_page import graph_html
 from assembly.booklet.pdf import write_booklets
 from assembly.booklet.plan_file import Piece, PlanFile, graph_pieces, gridshell_pieces, plan_file, plan_json
 from assembly.booklet.schedule_table import SCHEDULE_HEADER, schedule_rows
+from assembly.booklet.segment_cards import SEGMENTS_HEADER, SPLICES_HEADER, segment_rows, splice_rows
 from assembly.graph.files import graph_json, graphml
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.pictures.laying_plan import laying_rows
-from assembly.pictures.locking_chart import locking_svg
+from assembly.pictures.locking_chart import LOCKING_HEADER, locking_rows, locking_svg
 from assembly.plan.clock import clock_of
 from assembly.plan.planned import NO_LIMITS, Planned
 from assembly.plan.schedule import Schedule
@@ -109,12 +109,14 @@ def gridshell_dossier(planned: Planned, gridshell: Gridshell, crew: Crew, langua
         write_csv(folder / "tables" / "laying.csv", LAYING_HEADER, rows)
 
     def write_locking(folder: Path) -> None:
-        write_locking_table(planned.locking, folder / "tables" / "locking.csv")
+        steps = (row for order in planned.locking for row in locking_rows(order))
+        write_csv(folder / "tables" / "locking.csv", LOCKING_HEADER, steps)
         write_text(folder / "locking.svg", locking_svg(planned.locking[0], language))
 
     def write_segments(folder: Path) -> None:
         tables = folder / "tables"
-        write_segment_tables(planned.segmentation, tables / "segments.csv", tables / "splices.csv")
+        write_csv(tables / "segments.csv", SEGMENTS_HEADER, segment_rows(planned.segmentation))
+        write_csv(tables / "splices.csv", SPLICES_HEADER, splice_rows(planned.segmentation))
 
     return PlanDossier(
         title=gridshell.title,

@@ -1,7 +1,7 @@
 """Purchase list and cutting list as CSV: one header line, LF; lengths in mm or m as named, masses in kg."""
 
-import os
 from collections.abc import Iterator
+from pathlib import Path
 
 from aag_cad.files import write_csv
 from aag_cad.shop.purchases import CutStock, Purchase, Purchases
@@ -64,11 +64,7 @@ def cutting_rows(purchases: Purchases) -> Iterator[tuple[str, ...]]:
             yield name, str(number), f"{sheet.length:g}", f"{strip.x:.1f}", "", strip.mark, "", "1/1", note
 
 
-def write_purchases(purchases: Purchases, path: str | os.PathLike[str]) -> None:
-    """Write the purchase list, without spares; FileError if the file cannot be written."""
-    write_csv(path, PURCHASES_HEADER, (purchase_row(line) for line in purchases.lines))
-
-
-def write_cutting(purchases: Purchases, path: str | os.PathLike[str]) -> None:
-    """Write the cutting list, one line for every piece; FileError if the file cannot be written."""
-    write_csv(path, CUTTING_HEADER, cutting_rows(purchases))
+def write_purchases(purchases: Purchases, folder: Path) -> None:
+    """Write the purchase list, without spares, and the cutting list, a line for every piece; FileError if it cannot."""
+    write_csv(folder / "purchases.csv", PURCHASES_HEADER, map(purchase_row, purchases.lines))
+    write_csv(folder / "cutting.csv", CUTTING_HEADER, cutting_rows(purchases))

@@ -1,14 +1,11 @@
 """summary.json: counts, figures, masses, findings, seconds and files of a build."""
 
-import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 from aag_cad.audit import forming_stresses
-from aag_cad.files import write_text
 from aag_cad.findings import Finding, finding_row
 from aag_cad.language import Language
 from aag_cad.mechanics.checks.supports import footing_checks
@@ -123,8 +120,3 @@ def summary_of(
         "files": dict(sizes),
         "seconds": {stage: round(value, 3) for stage, value in seconds.items()},
     }
-
-
-def write_summary(summary: Mapping[str, Any], path: Path) -> None:
-    """Write the summary as JSON; FileError if the file cannot be written."""
-    write_text(path, json.dumps(summary, indent=1, ensure_ascii=False) + "\n")

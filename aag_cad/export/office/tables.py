@@ -1,8 +1,7 @@
 """Part and hole tables as CSV: one header line, LF, sorted by mark; lengths in mm, masses in kg."""
 
 import math
-import os
-from collections.abc import Iterable
+from pathlib import Path
 
 from aag_cad.files import write_csv
 from aag_cad.mechanics.checks.lamella import lamella_stress
@@ -13,10 +12,6 @@ from aag_cad.parts.model import FlatBar, Gridshell, Part, Timber, all_parts
 from aag_cad.parts.products import product_name
 from aag_cad.parts.quantities import hole_count, largest_twist, mass, material_name, sizes, smallest_radius
 from aag_cad.units import deg_per_m
-from assembly.base.locking_order import LockingOrder
-from assembly.base.segments import Segmentation
-from assembly.booklet.segment_cards import SEGMENTS_HEADER, SPLICES_HEADER, segment_rows, splice_rows
-from assembly.pictures.locking_chart import LOCKING_HEADER, locking_rows
 
 PARTS_HEADER = (
     "mark", "kind", "product", "family", "shell", "beam", "length_mm", "width_mm", "thickness_mm", "holes",
@@ -75,30 +70,6 @@ def hole_rows(plank: FlatBar) -> list[tuple[str, ...]]:
     return rows
 
 
-def write_parts_table(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
-    """Write one line for every part; FileError if the file cannot be written."""
-    rows = (part_row(part, gridshell) for part in sorted(all_parts(gridshell), key=lambda part: part.mark))
-    write_csv(path, PARTS_HEADER, rows)
-
-
-def write_holes_table(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
-    """Write one line for every hole of every plank, from its start; FileError if the file cannot be written."""
-    write_csv(path, HOLES_HEADER, (row for plank in sorted_planks(gridshell) for row in hole_rows(plank)))
-
-
-def write_locking_table(orders: Iterable[LockingOrder], path: str | os.PathLike[str]) -> None:
-    """Write the order in which geodesics lock each shell, a line for each step; FileError if it cannot be written."""
-    write_csv(path, LOCKING_HEADER, (row for order in orders for row in locking_rows(order)))
-
-
-def write_segment_tables(
-    segmentation: Segmentation, path: str | os.PathLike[str], splices_path: str | os.PathLike[str]
-) -> None:
-    """Write what travels in one piece, and the splices where shells are cut; FileError if they cannot be written."""
-    write_csv(path, SEGMENTS_HEADER, segment_rows(segmentation))
-    write_csv(splices_path, SPLICES_HEADER, splice_rows(segmentation))
-
-
 def check_row(plank: FlatBar, timber: Timber) -> tuple[str, ...]:
     """Return the forming stresses of a plank in the order of ``CHECKS_HEADER``; utilisations by f_m and f_v."""
     stress = lamella_stress(plank, timber)
@@ -117,6 +88,9 @@ def check_row(plank: FlatBar, timber: Timber) -> tuple[str, ...]:
     )
 
 
-def write_checks_table(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
-    """Write one line of forming stresses for every plank; FileError if the file cannot be written."""
-    write_csv(path, CHECKS_HEADER, (check_row(plank, gridshell.timber) for plank in sorted_planks(gridshell)))
+def write_tables(gridshell: Gridshell, folder: Path) -> None:
+    """Write a line for every part, every hole and every plank's forming stresses; FileError if a file cannot be."""
+    parts, planks = sorted(all_parts(gridshell), key=lambda part: part.mark), sorted_planks(gridshell)
+    write_csv(folder / "parts.csv", PARTS_HEADER, (part_row(part, gridshell) for part in parts))
+    write_csv(folder / "holes.csv", HOLES_HEADER, (row for plank in planks for row in hole_rows(plank)))
+    write_csv(folder / "checks.csv", CHECKS_HEADER, (check_row(plank, gridshell.timber) for plank in planks))

@@ -1,10 +1,11 @@
 """Tables for making the coupled beams: what the drilling embeds, stands to sag them on, over-drilled stations."""
 
 import math
-import os
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain
+from pathlib import Path
 from typing import TypeAlias
 
 from aag_cad.files import write_csv
@@ -138,31 +139,17 @@ def drilling_rows(pair: CoupledPair, left: FlatBar, right: FlatBar) -> list[Row]
     return rows
 
 
-def _write(
-    gridshell: Gridshell,
-    path: str | os.PathLike[str],
-    header: tuple[str, ...],
-    rows_of: Callable[[Shell], Iterable[Row]],
-) -> None:
-    """Write what a shell gives as CSV, the shells by mark."""
-    made = made_for_each(gridshell, lambda shell: tuple(rows_of(shell)))
-    write_csv(path, header, (row for mark in sorted(made) for row in made[mark]))
+def write_prefabrication(gridshell: Gridshell, folder: Path) -> None:
+    """Write a line for every coupled beam and one for every bolt of it, drilled as built and over-drilled, as CSV.
 
+    FileError if a file cannot be written.
+    """
 
-def write_prefabrication(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
-    """Write one line for every coupled beam as CSV; FileError if the file cannot be written."""
+    def rows(shell: Shell) -> tuple[tuple[Row, ...], tuple[Row, ...]]:
+        paired = list(_paired_planks(shell))
+        beams = (prefabrication_row(prefabrication_of(shell, pair, gridshell.timber)) for pair, _, _ in paired)
+        return tuple(beams), tuple(row for item in paired for row in drilling_rows(*item))
 
-    def rows(shell: Shell) -> Iterator[Row]:
-        made = (prefabrication_of(shell, pair, gridshell.timber) for pair, _, _ in _paired_planks(shell))
-        return map(prefabrication_row, made)
-
-    _write(gridshell, path, PREFABRICATION_HEADER, rows)
-
-
-def write_drilling(gridshell: Gridshell, path: str | os.PathLike[str]) -> None:
-    """Write one line for every bolt of every beam as CSV, nominal and over-drilled; FileError if it cannot."""
-
-    def rows(shell: Shell) -> Iterator[Row]:
-        return (row for item in _paired_planks(shell) for row in drilling_rows(*item))
-
-    _write(gridshell, path, DRILLING_HEADER, rows)
+    beams, bolts = zip(*(made for _, made in sorted(made_for_each(gridshell, rows).items())), strict=True)
+    write_csv(folder / "prefabrication.csv", PREFABRICATION_HEADER, chain.from_iterable(beams))
+    write_csv(folder / "drilling.csv", DRILLING_HEADER, chain.from_iterable(bolts))
