@@ -53,9 +53,14 @@ def short_in(mark: str, shell: str) -> str:
     return mark.removeprefix(f"{shell}-") if shell else mark
 
 
+def ranges_of(marks: Sequence[str]) -> tuple[str, ...]:
+    """Return the ranges of marks if they are those of a gridshell, and else the marks as they are."""
+    try:
+        return mark_ranges(marks)
+    except MarkError:
+        return tuple(marks)
+
+
 def named_marks(marks: Sequence[str]) -> str:
     """Return marks as one text: in ranges if they are those of a gridshell, and else as they are."""
-    try:
-        return joined_ranges(marks)
-    except MarkError:
-        return ", ".join(marks)
+    return ", ".join(ranges_of(marks))

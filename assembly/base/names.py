@@ -1,6 +1,9 @@
 """What parts are called in print, as sentences in no language yet."""
 
-from aag_cad.language import Text, text
+from collections.abc import Mapping
+from typing import Any
+
+from aag_cad.language import Sentence, Text, text, words_table
 from aag_cad.parts.kinds import kind_of
 from aag_cad.parts.model import Part
 from aag_cad.parts.quantities import sizes
@@ -16,3 +19,16 @@ def part_text(part: Part) -> Text:
     """
     length, width, thick = map(float, sizes(part))
     return text(f"parts.names.{kind_of(part).key}", length=length, width=width, thick=thick)
+
+
+def kind_text(kind: str) -> Sentence:
+    """Return the word for a kind of part; a kind that the tables do not know stands as it is."""
+    return text(f"explain.kinds.{kind}") if kind in words_table("explain")["kinds"] else kind
+
+
+def node_text(node: Mapping[str, Any]) -> Sentence:
+    """Return what a part of a graph is called: a plank by its section where its node has one, and else by its kind."""
+    width, depth = node.get("width_mm"), node.get("depth_mm")
+    if width is None or depth is None:
+        return kind_text(node["kind"])
+    return text("parts.names.section", kind=kind_text(node["kind"]), width=max(width, depth), thick=min(width, depth))

@@ -12,6 +12,8 @@ from aag_cad.units import Floats
 
 _UPRIGHT = 1e-3
 _ONE_LINE = 1e-9
+# The cosine of 45 degrees.
+_STEEP = 0.7071
 _NOT_TIMBER = ("footing", "cover")
 
 
@@ -61,6 +63,12 @@ def elevation_view(shell: Shell) -> View:
 def vault_view() -> View:
     """Return the plan: seen from above, x to the right and y up the sheet."""
     return View(np.eye(3))
+
+
+def floor_view(points: Floats) -> View:
+    """Return the view square on to the floor that points (n, 3) lie on: the plan, unless they lie on a steep plane."""
+    axes = best_plane(points)
+    return View(axes) if axes[2, 2] < _STEEP else vault_view()
 
 
 def best_plane(points: Floats) -> Floats:

@@ -2,92 +2,42 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import ceil
-from typing import Any, Literal, TypeAlias
+from typing import Any
 
-from aag_cad.findings import worst_first
 from aag_cad.language import Language
-from aag_cad.parts.index import index_of
-from aag_cad.parts.marks import parse_mark
+from aag_cad.parts.index import Index, index_of
+from aag_cad.parts.marks import joint_of, parse_mark
 from aag_cad.parts.model import Gridshell
+from assembly.base.phases import PHASE
 from assembly.base.steps import Plan, Step
-from assembly.booklet.cards import Weights, step_card, totals
+from assembly.booklet.booklet_data import Booklet, Handled, Kind, booklet_data, card_lines, sheet_words
+from assembly.booklet.card_tables import gridshell_known, step_table, totals
+from assembly.booklet.cards import Known, step_card
 from assembly.booklet.drawn_pages import Made, laying_pages, locking_pages, map_pages, segment_pages
-from assembly.booklet.gantt import gantt_svg
 from assembly.booklet.qr import qr_svg
 from assembly.booklet.step_words import step_title
-from assembly.booklet.words import booklet_words, finding_lines
 from assembly.drawing.joint_sections import block_section_svg, node_section_svg
 from assembly.drawing.perspective import perspective_svg
 from assembly.pictures.backgrounds import Backgrounds, backgrounds_of
 from assembly.pictures.scenes import home_shell, legend_svgs, phase_svg, picture_key, step_pictures
 from assembly.pictures.site_scenes import key_svg
-from assembly.plan.piece_weights import piece_weights, segment_weights
+from assembly.plan.piece_weights import segment_weights
 from assembly.plan.planned import Planned
-from assembly.plan.schedule import Schedule
-
-Kind: TypeAlias = Literal["sequence", "disassembly"]
-
-_MOST_PROPS = 30
-
-
-@dataclass(frozen=True)
-class Booklet:
-    """A booklet: what its template prints, with pictures by name, and these pictures as SVG."""
-
-    data: dict[str, Any]
-    pictures: dict[str, str]
 
 
 @dataclass(frozen=True)
 class Common:
-    """What all booklets of a gridshell share: masses and lengths of its pieces, and pictures of the whole."""
+    """What all booklets of a gridshell share: what is known of its parts, and pictures of the whole."""
 
     gridshell: Gridshell
-    weights: Weights
+    known: Known
     pictures: dict[str, str]
     maps: dict[str, Any]
-    language: Language
 
-
-def _sheet_words(kind: Kind, language: Language) -> dict[str, Any]:
-    """Return the words that depend on the kind of booklet."""
-    words = booklet_words(language)
-    side = "up" if kind == "sequence" else "down"
-    card = words["card"]
-    return words | {
-        "subtitle": words[kind],
-        "foot": words[f"{kind}_foot"],
-        "read": {"title": words["read"]["title"], "lines": words["read"][kind]},
-        "list": words["list"] | {"text": words["list"][kind]},
-        "card": card | {"extras": card[f"extras_{side}"], "counted": card["at_hand" if side == "up" else "stored"]},
-    }
-
-
-def _days(schedule: Schedule) -> int:
-    return ceil(schedule.days)
-
-
-def _cover(words: Mapping[str, Any], plan: Plan, schedule: Schedule, common: Common) -> dict[str, Any]:
-    people = max((step.crew for step in plan.steps), default=0)
-    told = words["cover"]["crew"].format(steps=len(plan.steps), people=people, days=_days(schedule))
-    return {"picture": "vault", "totals": totals(common.gridshell, common.weights, common.language), "told": told}
-
-
-def _listing(words: Mapping[str, Any], plan: Plan, language: Language) -> list[dict[str, Any]]:
-    """Return the steps by chapter: those of each shell and those on site, in the order of the plan."""
-    names = dict.fromkeys(step.shell for step in plan.steps)
-    return [
-        {
-            "name": words["list"]["shell"].format(shell=name) if name else words["list"]["site"],
-            "steps": [
-                {"number": step.number, "title": step_title(step, language), "crew": step.crew, "hold": step.held}
-                for step in plan.steps
-                if step.shell == name
-            ],
-        }
-        for name in names
-    ]
+    @property
+    def language(self) -> Language:
+        """The language of the booklets."""
+        return self.known.language
 
 
 def _alone(step: Step) -> str:
@@ -106,29 +56,14 @@ def _caption(step: Step) -> str:
     return step.phase
 
 
-def _card_words(kind: Kind, words: Mapping[str, Any], step: Step, card: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the lines of a card that are put together from words and figures."""
-    said = words["card"]
-    props = card["props"]
-    more = said["and_more"].format(count=len(props) - _MOST_PROPS) if len(props) > _MOST_PROPS else ""
-    added = said["parts_up" if kind == "sequence" else "parts_down"]
-    return {
-        "line": said["shell"].format(shell=step.shell) if step.shell else "",
-        "caption": words["captions"].get(_caption(step), ""),
-        "heaviest": said["heaviest"].format(piece=card["heaviest"]) if card["heaviest"] else "",
-        "added": added.format(pieces=card["pieces"], mass=card["added"]),
-        "propped": ", ".join(props[:_MOST_PROPS]) + (f" {more}" if more else ""),
-    }
-
-
 def _cards(
     kind: Kind, words: Mapping[str, Any], plan: Plan, backgrounds: Backgrounds, common: Common, pictures: dict[str, str]
 ) -> Iterator[dict[str, Any]]:
     """Yield the cards of all steps; their pictures are added to ``pictures``, those of steps alike only once."""
     gridshell, drawn = backgrounds.gridshell, dict[tuple[object, ...], list[str]]()
-    parts = index_of(gridshell).parts
     for step in plan.steps:
-        card = step_card(gridshell, plan, step, parts, common.weights, common.language)
+        listed = () if PHASE[step.phase].listed else step.marks
+        card = step_card(plan, step, common.known, step_table(gridshell, plan, step, common.known), listed)
         key = picture_key(backgrounds, step)
         if key not in drawn:
             made = {f"step-{step.number}-{i}": picture for i, picture in enumerate(step_pictures(backgrounds, step))}
@@ -137,8 +72,9 @@ def _cards(
         pictures[f"qr-{step.number}"] = qr_svg(card["qr"])
         yield (
             card
-            | _card_words(kind, words, step, card)
+            | card_lines(kind, words, step, card)
             | {
+                "caption": words["captions"].get(_caption(step), ""),
                 "pictures": drawn[key],
                 "qr": f"qr-{step.number}",
                 "key": f"key-{home}" if (home := home_shell(step) or _alone(step)) else "",
@@ -152,7 +88,7 @@ def common_of(gridshell: Gridshell, language: Language) -> Common:
     keys = {f"key-{shell.mark}": key_svg(gridshell, shell.mark) for shell in gridshell.shells}
     pictures = {"vault": perspective_svg(gridshell)} | swatches | keys
     maps, drawn = map_pages(gridshell, language)
-    return Common(gridshell, piece_weights(gridshell), pictures | drawn, maps, language)
+    return Common(gridshell, gridshell_known(gridshell, language), pictures | drawn, maps)
 
 
 def _booklet(kind: Kind, planned: Planned, common: Common) -> tuple[Booklet, Backgrounds]:
@@ -160,34 +96,36 @@ def _booklet(kind: Kind, planned: Planned, common: Common) -> tuple[Booklet, Bac
     up = kind == "sequence"
     plan, schedule = (planned.plan, planned.schedule) if up else (planned.down, planned.down_schedule)
     gridshell, pictures = common.gridshell, dict(common.pictures)
-    common = replace(common, weights={**common.weights, **segment_weights(gridshell, planned.segmentation)})
+    weights = {**common.known.weights, **segment_weights(gridshell, planned.segmentation)}
+    common = replace(common, known=replace(common.known, weights=weights))
     slides = [slide for order in planned.orders.values() for slide in order.slides]
-    words, backgrounds = (
-        _sheet_words(kind, common.language),
-        backgrounds_of(plan, gridshell, planned.segmentation, slides, common.language),
+    words = sheet_words(kind, common.language)
+    backgrounds = backgrounds_of(plan, gridshell, planned.segmentation, slides, common.language)
+    data, pictures["schedule"] = booklet_data(
+        kind,
+        gridshell.title,
+        words,
+        plan,
+        schedule,
+        totals(gridshell, common.known),
+        _cards(kind, words, plan, backgrounds, common, pictures),
+        common.language,
+        cover="vault",
+        rest=words["list"]["site"],
     )
-    pictures["schedule"] = gantt_svg(
-        plan, schedule, f"{gridshell.title}: {words['schedule']['title']}", common.language
-    )
-    data = {
-        "kind": kind,
-        "language": common.language,
-        "title": gridshell.title,
-        "name": gridshell.name,
-        "words": words,
-        "cover": _cover(words, plan, schedule, common),
-        "chapters": _listing(words, plan, common.language),
-        "schedule": "schedule",
-        "cards": list(_cards(kind, words, plan, backgrounds, common, pictures)),
-        "phases": [],
-        "sections": [],
-        "layings": [],
-        "lockings": [],
-        "segments": [],
-        "findings": finding_lines(worst_first(plan.findings), common.language),
-        **common.maps,
-    }
-    return Booklet(data, pictures), backgrounds
+    index = index_of(gridshell)
+    example = next(iter((*index.geodesics, *index.planks)))
+    return Booklet(data | common.maps, pictures, tuple(_handled(plan, index, common.language)), example), backgrounds
+
+
+def _handled(plan: Plan, index: Index, language: Language) -> Iterator[Handled]:
+    """Yield for each step its number, title and what it handles: its parts, beams, shells, and planks it fastens."""
+    for step in plan.steps:
+        own = set(step.marks)
+        joints = {joint_of(mark) for mark in own} if PHASE[step.phase].fastens else set[str]()
+        members = (mark for joint in joints if joint in index.joints for mark in index.joints[joint].members)
+        fastened = {index.unit_of[mark] for mark in members if mark in index.unit_of}
+        yield step.number, step_title(step, language), sorted({*own, *step.assemblies, *fastened})
 
 
 def _how(words: Mapping[str, Any], plan: Plan, backgrounds: Backgrounds, cards: Sequence[Mapping[str, Any]]) -> Made:
@@ -222,7 +160,7 @@ def sequence_booklet(planned: Planned, common: Common) -> Booklet:
     ):
         data |= more
         pictures |= drawn
-    return Booklet(data, pictures)
+    return replace(booklet, data=data, pictures=pictures)
 
 
 def disassembly_booklet(planned: Planned, common: Common) -> Booklet:

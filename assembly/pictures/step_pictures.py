@@ -46,6 +46,7 @@ DONE = Style("#777")
 LABEL_SIZE = 27.0
 DOT_LABEL_SIZE = 23.0
 _DOT = 10.0
+_TRIANGLE = 24.0
 _PROP = 12.0
 _BESIDE = 230.0
 
@@ -77,12 +78,12 @@ class Scene:
     slides: Mapping[str, Literal["start", "end"]] = field(default_factory=dict)
 
 
-def _triangle(start: Floats, towards: Floats, size: float) -> Floats:
-    """Return a triangle (3, 2) before the start of a line that points into it."""
-    along = (towards - start) / np.linalg.norm(towards - start)
+def start_triangle(points: Floats) -> Floats:
+    """Return a triangle (3, 2) before the start of a line (n, 2) that points into it."""
+    start, along = points[0], (points[1] - points[0]) / np.linalg.norm(points[1] - points[0])
     across = np.array([-along[1], along[0]])
-    tip, base = start - 0.3 * size * along, start - 1.6 * size * along
-    return np.array([tip, base + 0.5 * size * across, base - 0.5 * size * across])
+    tip, base = start - 0.3 * _TRIANGLE * along, start - 1.6 * _TRIANGLE * along
+    return np.array([tip, base + 0.5 * _TRIANGLE * across, base - 0.5 * _TRIANGLE * across])
 
 
 def slide_arrow(points: Floats, outside: Literal["start", "end"]) -> str:
@@ -147,7 +148,7 @@ def scene_items(outline: Outline, scene: Scene) -> Iterable[str]:
         elif mark in shown:
             yield group([path(points)], FAINT_NEW if mark in scene.worked_on else THERE)
     yield from _piece_items(outline, scene, beneath=False)
-    triangles = (_triangle(outline.lines[mark][0], outline.lines[mark][1], 24.0) for mark in scene.starts)
+    triangles = (start_triangle(outline.lines[mark]) for mark in scene.starts)
     yield group((path(triangle) for triangle in triangles), Style("#000"))
     yield group((circle(outline.points[mark], 0.6 * _DOT) for mark in scene.done), DONE)
     yield group((circle(outline.points[mark], 0.8 * _DOT) for mark in scene.rings), RING)

@@ -6,12 +6,13 @@ from difflib import get_close_matches
 
 import networkx as nx
 
-from aag_cad.language import Sentence, Text, has_words, text
+from aag_cad.language import Text, text
 from aag_cad.parts.kinds import is_fastener
 from assembly.base.any_graph import as_multigraph
 from assembly.base.errors import PlanError
 from assembly.base.locking_order import LockingOrder, frequency
 from assembly.base.mark_ranges import named_marks
+from assembly.base.names import kind_text
 from assembly.base.steps import Plan, Step
 from assembly.graph.laying_units import joint_name
 from assembly.plan.schedule import Schedule
@@ -121,11 +122,6 @@ def _reasons(plan: Plan, step: Step, around: Mapping[tuple[int, str], Sequence[s
     return found
 
 
-def _kind(kind: str) -> Sentence:
-    """Return the word for a kind of part; a kind that the tables do not know stands as it is."""
-    return text(f"explain.kinds.{kind}") if has_words(f"explain.kinds.{kind}") else kind
-
-
 def explanation(
     any_graph: "nx.Graph[str]",
     plan: Plan,
@@ -147,7 +143,7 @@ def explanation(
         raise PlanError(f"--explain {mark}: no step of the plan handles it; see the findings of the plan")
     length = max(float(graph.nodes[part]["length_mm"]) for part in parts)
     mass = sum(float(graph.nodes[part]["mass_kg"]) for part in parts)
-    lines = [text("explain.part", mark=mark, kind=_kind(str(node["kind"])), length=length, mass=mass)]
+    lines = [text("explain.part", mark=mark, kind=kind_text(node["kind"]), length=length, mass=mass)]
     beam = node.get("beam", "")
     if beam and beam != mark:
         lines.append(text("explain.of_beam", beam=beam))

@@ -46,7 +46,8 @@ def _says(key: str, **figures: Figure) -> Text:
     return text(f"graph.plan.{key}", **figures)
 
 
-def _kits(graph: "nx.MultiGraph[str]", units: Mapping[str, Unit]) -> dict[str, tuple[str, ...]]:
+def unit_kits(graph: "nx.MultiGraph[str]", units: Mapping[str, Unit]) -> dict[str, tuple[str, ...]]:
+    """Return all parts of each unit: what is laid first, then what is put together with a beam."""
     laid = {part for unit in units.values() for part in unit.parts}
     added: dict[str, list[str]] = defaultdict(list)
     for mark in sorted(mark for mark in graph if mark not in laid):
@@ -54,7 +55,7 @@ def _kits(graph: "nx.MultiGraph[str]", units: Mapping[str, Unit]) -> dict[str, t
     return {mark: (*unit.parts, *added.get(mark, ())) for mark, unit in units.items()}
 
 
-def _weights(
+def unit_weights(
     graph: "nx.MultiGraph[str]", kits: Mapping[str, tuple[str, ...]], units: Mapping[str, Unit]
 ) -> dict[str, tuple[float, float]]:
     """Return (kg, mm) of every part, and of every unit with its kit."""
@@ -162,8 +163,8 @@ def graph_plan(graph: "nx.Graph[str]", people: int, lift_limit: float) -> Plan:
     if not whole:
         raise PlanError("graph: no nodes, at least 1 needed: give it the parts that are to be put together")
     woven, units = interlacing(whole, later=()), units_of(whole)
-    order, kits = flat_order_of(whole, woven, later=()), _kits(whole, units)
-    basis, weights = _Basis(whole, units, kits, woven, order), _weights(whole, kits, units)
+    order, kits = flat_order_of(whole, woven, later=()), unit_kits(whole, units)
+    basis, weights = _Basis(whole, units, kits, woven, order), unit_weights(whole, kits, units)
     placed = {mark: unit for unit, kit in kits.items() for mark in kit}
     found, waiting = joinings(whole, units, placed, woven.left_out, woven.overlaps)
     step_of: dict[str, str] = {}

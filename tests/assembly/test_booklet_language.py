@@ -12,7 +12,8 @@ from aag_cad.parts.marks import joint_of, parse_mark
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.resources import template
 from assembly.base.phases import PHASES
-from assembly.booklet.contents import Booklet, common_of, disassembly_booklet, sequence_booklet
+from assembly.booklet.booklet_data import Booklet
+from assembly.booklet.contents import common_of, disassembly_booklet, sequence_booklet
 from assembly.booklet.pdf import booklet_pdf
 from assembly.booklet.words import booklet_words
 from assembly.plan.planned import Planned

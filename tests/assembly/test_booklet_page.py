@@ -10,8 +10,9 @@ import pytest
 from aag_cad.design import Design
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.resources import template
-from assembly.booklet.contents import Booklet, common_of, disassembly_booklet, sequence_booklet
-from assembly.booklet.graph_page import graph_html
+from assembly.booklet.booklet_data import Booklet
+from assembly.booklet.contents import common_of, disassembly_booklet, sequence_booklet
+from assembly.booklet.graph_booklet import graph_booklet
 from assembly.booklet.phone_page import page_html
 from assembly.booklet.shared_pictures import shared_pictures
 from assembly.booklet.step_words import step_title
@@ -74,8 +75,8 @@ def booklet(planned: Planned, gridshell: Gridshell) -> Booklet:
 
 
 @pytest.fixture(scope="module")
-def page(booklet: Booklet, planned: Planned, gridshell: Gridshell) -> str:
-    return page_html(booklet, planned.plan, gridshell)
+def page(booklet: Booklet) -> str:
+    return page_html(booklet)
 
 
 @pytest.fixture(scope="module")
@@ -157,7 +158,7 @@ def test_every_picture_of_the_booklet_is_well_formed(booklet: Booklet) -> None:
 
 def test_the_german_page_is_german_and_the_same_each_time(planned: Planned, gridshell: Gridshell) -> None:
     def made() -> str:
-        return page_html(sequence_booklet(planned, common_of(gridshell, "de")), planned.plan, gridshell)
+        return page_html(sequence_booklet(planned, common_of(gridshell, "de")))
 
     page = made()
     assert page.startswith('<!doctype html>\n<html lang="de">')
@@ -172,7 +173,7 @@ def test_the_german_page_is_german_and_the_same_each_time(planned: Planned, grid
 
 def test_taking_down_has_a_page_of_its_own(planned: Planned, gridshell: Gridshell) -> None:
     booklet = disassembly_booklet(planned, common_of(gridshell, "en"))
-    reader = read(page_html(booklet, planned.down, gridshell))
+    reader = read(page_html(booklet))
     assert_sound(reader)
     assert [step.number for step in planned.down.steps if f"step-{step.number}-done" not in reader.boxes] == []
 
@@ -187,7 +188,7 @@ def test_a_plain_graph_has_a_page_too(name: str, design: Design) -> None:
     graph = read_graph(template("graphs", f"{name}.json").read_text("utf-8"))
     plan = graph_plan(graph, 4, 25.0)
     schedule = schedule_of(plan, step_minutes(plan, graph, design.crew.minutes), 4, 8.0)
-    page = graph_html(plan, schedule, graph)
+    page = page_html(graph_booklet(graph, plan, schedule))
     reader = read(page)
     assert_sound(reader)
     assert [step.number for step in plan.steps if f"step-{step.number}-done" not in reader.boxes] == []

@@ -17,7 +17,8 @@ from aag_cad.resources import template
 from assembly.base.locking_order import LockingOrder, LockingStep, Prop
 from assembly.base.phases import DOWN_PHASES, PHASES, UP_PHASES, Phase
 from assembly.base.steps import Plan
-from assembly.booklet.cards import qr_text, step_card, totals
+from assembly.booklet.card_tables import gridshell_known, step_table, totals
+from assembly.booklet.cards import qr_text, step_card
 from assembly.booklet.gantt import gantt_svg
 from assembly.booklet.step_words import StepWords, step_words
 from assembly.drawing.joint_sections import block_section_svg, node_section_svg
@@ -169,13 +170,15 @@ def test_a_step_says_the_same_in_german_as_in_english(plan: Plan) -> None:
 
 
 def test_german_cards_print_the_figures_of_the_english_ones(plan: Plan, gridshell: Gridshell) -> None:
-    weights, parts = piece_weights(gridshell), {part.mark: part for part in all_parts(gridshell)}
+    known = [gridshell_known(gridshell, language) for language in LANGUAGES]
     seen: set[str] = set()
     for step in plan.steps:
         if step.phase in seen:
             continue
         seen.add(step.phase)
-        english, german = (step_card(gridshell, plan, step, parts, weights, language) for language in LANGUAGES)
+        english, german = (
+            step_card(plan, step, each, step_table(gridshell, plan, step, each), step.marks) for each in known
+        )
         assert set(english) == set(german)
         for name in ("id", "pieces", "crew", "props", "qr"):
             assert english[name] == german[name]
@@ -217,8 +220,7 @@ def test_a_make_is_called_in_english_as_the_files_call_the_product(gridshell: Gr
 
 
 def test_the_totals_of_the_cover_have_a_decimal_comma_in_german(gridshell: Gridshell) -> None:
-    weights = piece_weights(gridshell)
-    english, german = (totals(gridshell, weights, language) for language in LANGUAGES)
+    english, german = (totals(gridshell, gridshell_known(gridshell, language)) for language in LANGUAGES)
     assert [row[1:3] for row in english["rows"]] == [row[1:3] for row in german["rows"]]
     assert [row[3].replace(".", ",") for row in english["rows"]] == [row[3] for row in german["rows"]]
     assert ["Holz", "Esche D50"] in german["facts"]

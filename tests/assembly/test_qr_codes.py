@@ -8,7 +8,8 @@ import segno
 
 from aag_cad.parts.model import Gridshell
 from assembly.base.errors import PlanError
-from assembly.booklet.contents import Booklet, common_of, sequence_booklet
+from assembly.booklet.booklet_data import Booklet
+from assembly.booklet.contents import common_of, sequence_booklet
 from assembly.booklet.qr import MOST_CHARACTERS, qr_rows, qr_svg
 from assembly.plan.planned import Planned
 

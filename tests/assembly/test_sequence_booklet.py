@@ -11,16 +11,16 @@ from pypdf import PdfReader
 
 from aag_cad.design import Design
 from aag_cad.parts.mesh import frame_matrix
-from aag_cad.parts.model import Gridshell, Part, all_parts
+from aag_cad.parts.model import Gridshell, all_parts
 from assembly.base.segments import Limits
 from assembly.base.steps import Plan, Step
-from assembly.booklet.cards import part_rows, step_card, step_table, totals
+from assembly.booklet.card_tables import gridshell_known, step_table, totals
+from assembly.booklet.cards import part_rows, step_card
 from assembly.booklet.contents import common_of, disassembly_booklet, sequence_booklet
 from assembly.booklet.pdf import booklet_pdf
 from assembly.booklet.step_words import step_title, step_words
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.durations import step_minutes
-from assembly.plan.piece_weights import piece_weights
 from assembly.plan.planned import Planned
 from assembly.plan.schedule import schedule_of
 from assembly.transport.segments import segments
@@ -210,20 +210,19 @@ def test_shells_alike_share_their_pictures(planned: Planned, gridshell: Gridshel
 
 
 def test_fasteners_are_counted_by_size_with_their_joints(plan: Plan, gridshell: Gridshell) -> None:
-    parts: dict[str, Part] = {bolt.mark: bolt for shell in gridshell.shells for bolt in shell.bolts}
+    known = gridshell_known(gridshell)
     marks = tuple(f"S1-N-{i:03d}-B{j}" for i in (1, 2, 3) for j in (1, 2, 3, 4))
     bolt = gridshell.shells[0].bolts[0]
-    assert part_rows(parts, marks) == [["12", f"Bolt M{bolt.diameter:g} x {bolt.length:g}", "at N-001 … N-003, 4 each"]]
+    assert part_rows(known, marks) == [["12", f"Bolt M{bolt.diameter:g} x {bolt.length:g}", "at N-001 … N-003, 4 each"]]
 
 
 def test_steel_and_concrete_are_listed_by_make_with_their_marks(plan: Plan, gridshell: Gridshell) -> None:
     """One line a make: straps of all lengths in one; rods at their blocks, shoes and blocks by their own marks."""
-    parts = {part.mark: part for part in all_parts(gridshell)}
-    steps = {step.id: step for step in plan.steps}
+    known, steps = gridshell_known(gridshell), {step.id: step for step in plan.steps}
 
     def rows(step: str, shell: str) -> dict[str, tuple[str, str]]:
         marks = tuple(mark for mark in steps[step].marks if mark.startswith(shell))
-        return {name: (count, where) for count, name, where in part_rows(parts, marks)}
+        return {name: (count, where) for count, name, where in part_rows(known, marks)}
 
     feet = rows("site.feet", "S1")
     assert feet["Concrete block 400 x 380 x 300"] == ("14", "C-01 … C-14")
@@ -241,10 +240,8 @@ def test_steel_and_concrete_are_listed_by_make_with_their_marks(plan: Plan, grid
 
 def test_the_cover_is_listed_by_make_whatever_the_lengths(plan: Plan, gridshell: Gridshell) -> None:
     """One line each for strips, mullions and clamping bars; screws by the side that they are driven from."""
-    parts = {part.mark: part for part in all_parts(gridshell)}
     step = next(step for step in plan.steps if step.id == "site.cover.S1")
-    card = step_card(gridshell, plan, step, parts, piece_weights(gridshell))
-    rows = {name: (count, where) for count, name, where in card["parts"]}
+    rows = {name: (count, where) for count, name, where in part_rows(gridshell_known(gridshell), step.marks)}
     assert rows["Strip 10 thick"] == ("13", "P-01 … P-13")
     assert rows["Mullion 50 x 3"] == ("14", "M-01 … M-14")
     assert rows["Clamping bar 50 x 2"] == ("14", "D-01 … D-14")
@@ -256,7 +253,7 @@ def test_the_cover_is_listed_by_make_whatever_the_lengths(plan: Plan, gridshell:
 def test_the_table_of_the_feet_sets_out_the_concrete_blocks(plan: Plan, gridshell: Gridshell) -> None:
     """Its x and y are those of the middle of each block, where the rod stands, and not of the timber beside it."""
     step = next(step for step in plan.steps if step.phase == "feet")
-    table = step_table(gridshell, plan, step, piece_weights(gridshell))
+    table = step_table(gridshell, plan, step, gridshell_known(gridshell))
     assert table is not None
     rows = {mark: (float(x), float(y)) for mark, x, y in table["rows"]}
     assert len(rows) == 42
@@ -268,16 +265,14 @@ def test_the_table_of_the_feet_sets_out_the_concrete_blocks(plan: Plan, gridshel
 
 
 def test_the_parts_of_a_card_add_up_to_its_step(plan: Plan, gridshell: Gridshell) -> None:
-    weights = piece_weights(gridshell)
-    parts = {part.mark: part for part in all_parts(gridshell)}
+    known = gridshell_known(gridshell)
     for step in plan.steps:
-        card = step_card(gridshell, plan, step, parts, weights)
-        if card["parts"]:
-            assert sum(int(row[0]) for row in card["parts"]) == len(step.marks)
+        card = step_card(plan, step, known, None, step.marks)
+        assert sum(int(row[0]) for row in card["parts"]) == card["pieces"] == len(step.marks)
 
 
 def test_the_totals_count_each_part_once(gridshell: Gridshell) -> None:
-    table = totals(gridshell, piece_weights(gridshell))
+    table = totals(gridshell, gridshell_known(gridshell))
     *kinds, whole = table["rows"]
     assert sum(int(row[1]) for row in kinds) == int(whole[1])
     assert sum(int(row[2]) for row in kinds) == int(whole[2])

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
@@ -16,8 +17,9 @@ from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Limits, Segmentation
 from assembly.base.steps import Plan
 from assembly.booklet.calendar import write_calendar
+from assembly.booklet.contents import common_of, disassembly_booklet, sequence_booklet
 from assembly.booklet.gantt import gantt_svg
-from assembly.booklet.graph_page import graph_html
+from assembly.booklet.graph_booklet import graph_booklet
 from assembly.booklet.pdf import write_booklets
 from assembly.booklet.plan_file import Piece, PlanFile, graph_pieces, gridshell_pieces, plan_file, plan_json
 from assembly.booklet.schedule_table import SCHEDULE_HEADER, schedule_rows
@@ -113,6 +115,11 @@ def gridshell_dossier(planned: Planned, gridshell: Gridshell, crew: Crew, langua
         write_csv(folder / "tables" / "locking.csv", LOCKING_HEADER, steps)
         write_text(folder / "locking.svg", locking_svg(planned.locking[0], language))
 
+    def write_sequence(folder: Path) -> None:
+        common = common_of(gridshell, language)
+        makers = {"sequence": sequence_booklet, "disassembly": disassembly_booklet}
+        write_booklets(folder, {name: partial(make, planned, common) for name, make in makers.items()})
+
     def write_segments(folder: Path) -> None:
         tables = folder / "tables"
         write_csv(tables / "segments.csv", SEGMENTS_HEADER, segment_rows(planned.segmentation))
@@ -131,7 +138,7 @@ def gridshell_dossier(planned: Planned, gridshell: Gridshell, crew: Crew, langua
             "plan": write_others,
             "locking": write_locking,
             "segments": write_segments,
-            "sequence": lambda folder: write_booklets(planned, gridshell, folder, language),
+            "sequence": write_sequence,
         },
         locking=planned.locking,
         segmentation=planned.segmentation,
@@ -159,7 +166,7 @@ def graph_dossier(
         write_csv(folder / "tables" / "segments.csv", GROUPS_HEADER, rows)
 
     def write_sequence(folder: Path) -> None:
-        write_text(folder / "sequence.html", graph_html(plan, schedule, graph, language))
+        write_booklets(folder, {"sequence": partial(graph_booklet, graph, plan, schedule, language)})
 
     limited: dict[str, _Write] = {} if limits == NO_LIMITS else {"segments": write_groups}
     return PlanDossier(
