@@ -1,7 +1,9 @@
 """What a plan of putting together or of taking down is made of: steps as data, in no language."""
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field
 
 from aag_cad.findings import Finding
 from aag_cad.language import Sentence, Text
@@ -94,7 +96,10 @@ class WholeShell:
     kind: Literal["whole shell"] = "whole shell"
 
 
-Extra: TypeAlias = SplicePut | FastenersPut | Lashing | Bracing | PropsAway | WholeShell
+# Read back from a file by its kind.
+Extra: TypeAlias = Annotated[
+    SplicePut | FastenersPut | Lashing | Bracing | PropsAway | WholeShell, Field(discriminator="kind")
+]
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,10 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 import networkx as nx
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
 from aag_cad.design_making import Crew
 from aag_cad.findings import Severity
@@ -26,7 +26,8 @@ from assembly.plan.schedule import Schedule, ScheduledStep
 
 PLAN_VERSION: Literal[3] = 3
 
-Words: TypeAlias = dict[Language, str]
+# A text in every language that there is.
+Words: TypeAlias = Annotated[dict[Language, str], Field(min_length=len(LANGUAGES))]
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class PlannedStep:
     """A step as data, what its card says in each language, and when it is done."""
 
     step: Step
-    words: dict[Language, StepWords]
+    words: Annotated[dict[Language, StepWords], Field(min_length=len(LANGUAGES))]
     time: StepTime
 
 
@@ -105,6 +106,11 @@ class PlanFile:
     ``people`` is the crew, ``day_minutes`` how long it works a day.
     """
 
+    # For all that it holds too: no key may be left out or made up, and every number is finite.
+    __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(
+        extra="forbid", allow_inf_nan=False, json_schema_serialization_defaults_required=True
+    )
+
     schema_version: Literal[3]
     name: str
     people: int
@@ -127,7 +133,8 @@ def _adapter() -> TypeAdapter[PlanFile]:
 
 def plan_schema() -> dict[str, Any]:
     """Return the JSON Schema of plan.json and disassembly.json."""
-    return _adapter().json_schema(mode="serialization")
+    schema = _adapter().json_schema(mode="serialization")
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | schema
 
 
 def _in_all(sentence: Sentence) -> Words:
