@@ -335,8 +335,19 @@ def new(
 
 
 @app.command()
-def schema() -> None:
-    """Print the JSON Schema of the design file."""
-    from aag_cad.design import Design
+@_user_errors
+def schema(
+    of: Annotated[str, typer.Argument(metavar="design|plan", help="the design file, or plan.json")] = "design",
+) -> None:
+    """Print the JSON Schema of the design file, or that of plan.json and disassembly.json."""
+    if of == "design":
+        from aag_cad.design import Design
 
-    print(json.dumps(Design.model_json_schema(), indent=1))
+        found = Design.model_json_schema()
+    elif of == "plan":
+        from assembly.booklet.plan_file import plan_schema
+
+        found = plan_schema()
+    else:
+        raise DesignError(f"aag schema: no schema of {of!r}; there are design and plan")
+    print(json.dumps(found, indent=1))

@@ -5,10 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import jsonschema
 import pytest
 
 from aag_cad import __version__
 from aag_cad.design import design_text, parse_design
+from assembly.booklet.plan_file import PLAN_VERSION, plan_schema
 
 AAG = [sys.executable, "-m", "aag_cad"]
 
@@ -38,6 +40,27 @@ def test_the_schema_is_json_and_knows_every_table_of_the_design_file() -> None:
         "crew", "stock", "optimise", "ridge", "site",
     }  # fmt: skip
     assert schema["additionalProperties"] is False
+
+
+def test_the_schema_of_plans_is_that_by_which_they_are_read(tmp_path: Path) -> None:
+    """A plan that was written keeps it, by an independent validator; and not if a key is missing."""
+    run = _aag("schema", "plan")
+    assert run.returncode == 0, run.stderr
+    schema = json.loads(run.stdout)
+    validator = jsonschema.Draft202012Validator(schema)
+    validator.check_schema(schema)
+    assert schema == plan_schema()
+    assert schema["properties"]["schema_version"]["const"] == PLAN_VERSION
+    plan = json.loads(_aag("plan", "kagome", "-o", str(tmp_path / "woven"), "--json").stdout)
+    validator.validate(plan)
+    del plan["steps"][0]["step"]["predecessors"]
+    assert not validator.is_valid(plan)
+
+
+def test_a_schema_that_there_is_not_is_refused_with_those_that_there_are() -> None:
+    run = _aag("schema", "studio")
+    assert run.returncode == 2
+    assert "no schema of 'studio'; there are design and plan" in run.stderr
 
 
 def test_new_writes_a_commented_design_that_parses_and_is_not_overwritten(tmp_path: Path) -> None:
