@@ -1,7 +1,34 @@
 """Gauss and mean curvature of a surface from its fundamental forms, to test with."""
 
-from aag_cad.geometry.surface import Forms
+from dataclasses import dataclass
+
+from aag_cad.geometry.surface import Jet, dot, unit_normals
 from aag_cad.units import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Forms:
+    """Coefficients of the first (E, F, G) and second (L, M, N) fundamental form; each (n,) float."""
+
+    E: Floats
+    F: Floats
+    G: Floats
+    L: Floats
+    M: Floats
+    N: Floats
+
+
+def fundamental_forms(jet: Jet) -> Forms:
+    """Return both fundamental forms at the points of a jet (paper section 1.1)."""
+    normal = unit_normals(jet)
+    return Forms(
+        E=dot(jet.du, jet.du),
+        F=dot(jet.du, jet.dv),
+        G=dot(jet.dv, jet.dv),
+        L=dot(jet.duu, normal),
+        M=dot(jet.duv, normal),
+        N=dot(jet.dvv, normal),
+    )
 
 
 def gauss_curvature(forms: Forms) -> Floats:

@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
+from curvatures import fundamental_forms
 
-from aag_cad.geometry.surface import Jet, dot, fundamental_forms, unit_normals
+from aag_cad.geometry.surface import Jet, dot, unit_normals
 from aag_cad.units import Floats
 
 

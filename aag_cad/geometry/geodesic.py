@@ -6,7 +6,7 @@ import numpy as np
 from scipy.integrate import solve_bvp
 
 from aag_cad.errors import NetworkError
-from aag_cad.geometry.surface import Surface, dot, fundamental_forms
+from aag_cad.geometry.surface import Surface, dot
 from aag_cad.units import Floats
 
 _TOLERANCE = 1e-10
@@ -16,11 +16,11 @@ _MAX_NODES = 20_000
 def geodesic_acceleration(surface: Surface, u: Floats, v: Floats, du: Floats, dv: Floats) -> tuple[Floats, Floats]:
     """Return (u'', v'') of the geodesic through (u, v) with velocity (u', v'), each (n,): kappa_g = 0."""
     jet = surface.jet(u, v)
-    forms = fundamental_forms(jet)
+    e, f, g = dot(jet.du, jet.du), dot(jet.du, jet.dv), dot(jet.dv, jet.dv)
     pull = jet.duu * (du**2)[:, None] + 2 * jet.duv * (du * dv)[:, None] + jet.dvv * (dv**2)[:, None]
     a, b = -dot(jet.du, pull), -dot(jet.dv, pull)
-    determinant = forms.E * forms.G - forms.F**2
-    return (forms.G * a - forms.F * b) / determinant, (forms.E * b - forms.F * a) / determinant
+    determinant = e * g - f**2
+    return (g * a - f * b) / determinant, (e * b - f * a) / determinant
 
 
 def geodesic_between(surface: Surface, start: Floats, end: Floats) -> Callable[[Floats], tuple[Floats, Floats]]:

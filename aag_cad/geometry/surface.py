@@ -1,4 +1,4 @@
-"""Surfaces as 2-jets: first and second fundamental forms, and normals."""
+"""Surfaces as 2-jets, and their normals."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -37,18 +37,6 @@ class Chart(Surface, Protocol):
         ...
 
 
-@dataclass(frozen=True, eq=False)
-class Forms:
-    """Coefficients of the first (E, F, G) and second (L, M, N) fundamental form; each (n,) float."""
-
-    E: Floats
-    F: Floats
-    G: Floats
-    L: Floats
-    M: Floats
-    N: Floats
-
-
 def dot(a: Floats, b: Floats) -> Floats:
     """Return the row-wise scalar product of two (n, 3) arrays as (n,)."""
     return np.asarray(np.einsum("ij,ij->i", a, b), dtype=np.float64)
@@ -62,16 +50,3 @@ def unit(a: Floats) -> Floats:
 def unit_normals(jet: Jet) -> Floats:
     """Return the unit normals X_u x X_v / |X_u x X_v|, (n, 3)."""
     return unit(np.cross(jet.du, jet.dv))
-
-
-def fundamental_forms(jet: Jet) -> Forms:
-    """Return both fundamental forms at the points of a jet (paper section 1.1)."""
-    normal = unit_normals(jet)
-    return Forms(
-        E=dot(jet.du, jet.du),
-        F=dot(jet.du, jet.dv),
-        G=dot(jet.dv, jet.dv),
-        L=dot(jet.duu, normal),
-        M=dot(jet.duv, normal),
-        N=dot(jet.dvv, normal),
-    )

@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from curvatures import gauss_curvature
+from curvatures import fundamental_forms, gauss_curvature
 
 from aag_cad.geometry.profiles import ArcProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
-from aag_cad.geometry.surface import fundamental_forms
 from aag_cad.web.quality import quality
 from aag_cad.web.web import sampled_web
 

@@ -5,13 +5,12 @@ import re
 
 import numpy as np
 import pytest
-from curvatures import gauss_curvature, mean_curvature
+from curvatures import fundamental_forms, gauss_curvature, mean_curvature
 from darboux import ParameterCurve, darboux
 
 from aag_cad.errors import SurfaceError
 from aag_cad.geometry.profiles import CrpcProfile, HyperboloidProfile, Profile, SplineProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
-from aag_cad.geometry.surface import fundamental_forms
 from aag_cad.units import Floats
 
 R0 = 5100.0

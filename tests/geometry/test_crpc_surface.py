@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from curvatures import gauss_curvature, mean_curvature
+from curvatures import fundamental_forms, gauss_curvature, mean_curvature
 from darboux import Darboux, ParameterCurve, darboux
 from hypothesis import given
 from hypothesis import strategies as st
@@ -17,7 +17,6 @@ from scipy.special import gamma
 
 from aag_cad.geometry.profiles import CrpcProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
-from aag_cad.geometry.surface import fundamental_forms
 from aag_cad.units import Floats
 
 R0 = 5100.0

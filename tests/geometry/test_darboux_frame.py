@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from curvatures import gauss_curvature, mean_curvature
+from curvatures import fundamental_forms, gauss_curvature, mean_curvature
 from darboux import Darboux, ParameterCurve, darboux
 from hypothesis import given
 from hypothesis import strategies as st
@@ -11,7 +11,7 @@ from numpy.polynomial import Chebyshev
 
 from aag_cad.geometry.profiles import CrpcProfile
 from aag_cad.geometry.revolution import RevolutionSurface
-from aag_cad.geometry.surface import Jet, dot, fundamental_forms
+from aag_cad.geometry.surface import Jet, dot
 from aag_cad.units import Floats
 
 RADIUS = 1700.0

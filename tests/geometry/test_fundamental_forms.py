@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from curvatures import gauss_curvature, mean_curvature
+from curvatures import Forms, fundamental_forms, gauss_curvature, mean_curvature
 
-from aag_cad.geometry.surface import Forms, Jet, fundamental_forms, unit_normals
+from aag_cad.geometry.surface import Jet, unit_normals
 from aag_cad.units import Floats
 
 RELATIVE = 1e-12

@@ -5,11 +5,11 @@ Not asserted: anything about the bending of real timber; planks are ideal strips
 
 import numpy as np
 import pytest
+from curvatures import fundamental_forms
 from darboux import Darboux, ParameterCurve, darboux
 
 from aag_cad.geometry.framed import curvatures_at, frames_at
 from aag_cad.geometry.revolution import AsymptoticChart
-from aag_cad.geometry.surface import fundamental_forms
 from aag_cad.network.model import CurveNetwork, NetworkCurve
 from aag_cad.parts.forming import plank_axes
 from aag_cad.parts.model import Shell

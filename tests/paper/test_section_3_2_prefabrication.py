@@ -7,11 +7,11 @@ import math
 
 import numpy as np
 import pytest
+from curvatures import fundamental_forms
 from scipy.integrate import quad
 
 from aag_cad.design import Design
 from aag_cad.geometry.revolution import AsymptoticChart
-from aag_cad.geometry.surface import fundamental_forms
 from aag_cad.network.extent import shell_areas
 from aag_cad.network.ridge import ridge_coordinate
 from aag_cad.parts.model import Gridshell, Part, Shell

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from curvatures import gauss_curvature
+from curvatures import fundamental_forms, gauss_curvature
 from web_curves import a_curve_normal_curvature, surface_line
 
 from aag_cad.design import Design
@@ -12,7 +12,6 @@ from aag_cad.errors import SurfaceError
 from aag_cad.geometry.framed import curvatures_at
 from aag_cad.geometry.profiles import CrpcProfile
 from aag_cad.geometry.revolution import AsymptoticChart, RevolutionSurface
-from aag_cad.geometry.surface import fundamental_forms
 from aag_cad.pipeline import web_of
 from aag_cad.units import Floats
 from aag_cad.web.interpolation import interpolated_surface
