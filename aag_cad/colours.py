@@ -27,13 +27,6 @@ def linear(code: str) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def lightness(code: str) -> float:
-    """Return the lightness L* of a code in CIELAB, 0 (black) to 100 (white): what grey print keeps of it."""
-    red, green, blue = linear(code)
-    luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue
-    return 116.0 * luminance ** (1.0 / 3.0) - 16.0 if luminance > 216.0 / 24389.0 else luminance * 24389.0 / 27.0
-
-
 def mixed(code: str, other: str, share: float) -> str:
     """Return a code with a share (0 to 1) of another one in it, by their sRGB numbers: tints and shades."""
     pairs = zip(srgb(code), srgb(other), strict=True)

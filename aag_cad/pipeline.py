@@ -41,12 +41,13 @@ from aag_cad.parts.build import gridshell_from
 from aag_cad.parts.model import Gridshell
 from aag_cad.shop.purchases import purchases_of
 from aag_cad.web.goals import Goals, Iteration, Optimised
+from aag_cad.web.interpolation import interpolated_surface
 from aag_cad.web.normal_equations import best_factorisation
 from aag_cad.web.npz import web_npz
 from aag_cad.web.obj import read_web_obj, web_obj
 from aag_cad.web.optimise import Method, optimise
 from aag_cad.web.quality import quality
-from aag_cad.web.start import StartWeb, start_web, web_chart
+from aag_cad.web.start import StartWeb, start_web
 from aag_cad.web.web import Web, crpc_web, sampled_web
 from assembly.base.segments import Limits
 from assembly.checks.findings import disassembly_faults, plan_faults
@@ -135,7 +136,7 @@ def worked_surface(design: Design) -> tuple[Chart, Web]:
         raise DesignError(
             f"optimise: {found.reason}: {found.explanation}; change the goals, or look at `aag optimise` of this design"
         )
-    return web_chart(start, found.web), found.web
+    return interpolated_surface(found.web, start.step, start.origin), found.web
 
 
 def write_optimised(found: Optimised, goals: Goals, folder: Path) -> dict[str, int]:

@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from aag_cad.colours import LEGEND, lightness, linear, mixed, srgb
+from aag_cad.colours import LEGEND, linear, mixed, srgb
 from aag_cad.families import BEAMS, EDGES, FAMILIES, GEODESICS, LAYERS
 from aag_cad.language import LANGUAGES
 from aag_cad.parts.index import index_of
@@ -17,6 +17,13 @@ from assembly.pictures.step_pictures import NEW, PIECES, THERE
 
 # What a reader tells apart side by side in grey: about a seventh of the way from black to white.
 APART = 15.0
+
+
+def lightness(code: str) -> float:
+    """Return the lightness L* of a code in CIELAB, 0 (black) to 100 (white): what grey print keeps of it."""
+    red, green, blue = linear(code)
+    luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue
+    return 116.0 * luminance ** (1.0 / 3.0) - 16.0 if luminance > 216.0 / 24389.0 else luminance * 24389.0 / 27.0
 
 
 def test_every_part_has_a_colour_and_every_colour_a_part(gridshell: Gridshell) -> None:

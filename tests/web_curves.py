@@ -18,7 +18,7 @@ def surface_line(surface: InterpolatedSurface, slope: int, intercept: float) -> 
 
     Slope +1 and -1 give A curves, 0 gives a G curve. SurfaceError if it misses the web.
     """
-    (low, high), (left, right) = surface.domain
+    (low, high), (left, right) = surface.ranges
     if slope:
         ends = sorted(((left - intercept) / slope, (right - intercept) / slope))
         low, high = max(low, ends[0]), min(high, ends[1])

@@ -45,11 +45,10 @@ class Goals:
 
 @dataclass(frozen=True)
 class Iteration:
-    """One Gauss-Newton step: its stage, the weight of fairness, the energies before it, the largest move per edge."""
+    """One Gauss-Newton step: its stage, the energies before it, the largest move per edge."""
 
     number: int
     stage: str
-    fairness_weight: float
     energies: Mapping[str, float]
     step: float
 

@@ -14,34 +14,42 @@ from aag_cad.web.web import Web
 
 @dataclass(frozen=True, eq=False)
 class InterpolatedSurface:
-    """A C2 surface X(u, v) through the vertices of a web: vertex (i, j) is X(i step, j step).
+    """A C2 surface X(u, v) through the vertices of a web: vertex (i, j) is X(u0 + i step, v0 + j step).
 
     Its A lines are v = c +- u, its G lines v = const, as in the charts of surfaces of revolution. ``knots`` and
-    ``degrees`` are those of u and v; ``control`` (rows, columns, 3) are the control points, mm.
+    ``degrees`` are those of u - u0 and v - v0, ``origin`` is (u0, v0); ``control`` (rows, columns, 3) are the control
+    points, mm.
     """
 
     step: float
     degrees: tuple[int, int]
     knots: tuple[Floats, Floats]
     control: Floats
+    origin: tuple[float, float]
 
     @property
-    def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
+    def ranges(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """The ranges of u and v."""
-        u, v = self.knots
-        return (float(u[0]), float(u[-1])), (float(v[0]), float(v[-1]))
+        (u, v), (u0, v0) = self.knots, self.origin
+        return (float(u[0]) + u0, float(u[-1]) + u0), (float(v[0]) + v0, float(v[-1]) + v0)
+
+    @property
+    def domain(self) -> tuple[float, float]:
+        """The range of u."""
+        return self.ranges[0]
 
     def jet(self, u: Floats, v: Floats) -> Jet:
         """Return the 2-jet at the parameters u, v, each (n,) float; SurfaceError outside the web."""
         places = []
-        for name, values, (low, high) in zip("uv", (u, v), self.domain, strict=True):
+        for name, given, knots, origin in zip("uv", (u, v), self.knots, self.origin, strict=True):
+            values, low, high = given - origin, float(knots[0]), float(knots[-1])
             # A hair's breadth outside is rounding, not a point outside the web.
             slack = 1e-9 * (high - low)
             wrong = ~((values >= low - slack) & (values <= high + slack))
             if np.any(wrong):
                 raise SurfaceError(
-                    f"web: the point {name} = {float(values[wrong][0]):.4f} lies outside the web, which covers {name} "
-                    f"from {low:.4f} to {high:.4f}; add rows or columns to the web"
+                    f"web: the point {name} = {float(given[wrong][0]):.4f} lies outside the web, which covers {name} "
+                    f"from {low + origin:.4f} to {high + origin:.4f}; add rows or columns to the web"
                 )
             places.append(np.clip(values, low, high))
         spline = NdBSpline(self.knots, self.control, self.degrees)
@@ -50,11 +58,12 @@ class InterpolatedSurface:
         return Jet(*(np.asarray(spline(at, nu=order), dtype=np.float64) for order in orders))
 
 
-def interpolated_surface(web: Web, step: float) -> InterpolatedSurface:
+def interpolated_surface(web: Web, step: float, origin: tuple[float, float] = (0.0, 0.0)) -> InterpolatedSurface:
     """Return the B-spline surface through all vertices of a web, quintic where the web has six rows and columns.
 
     ``step`` is the parameter length of a cell, equal in both directions, so that the diagonals of the grid are
-    v = c +- u. A web of n < 6 rows is one polynomial piece of degree n - 1 in that direction.
+    v = c +- u; ``origin`` are the parameters of vertex (0, 0). A web of n < 6 rows is one polynomial piece of degree
+    n - 1 in that direction.
     """
     if not (math.isfinite(step) and step > 0.0):
         raise SurfaceError(f"web: the step {step!r} of the interpolation must be positive")
@@ -66,4 +75,4 @@ def interpolated_surface(web: Web, step: float) -> InterpolatedSurface:
     by_v = make_interp_spline(step * np.arange(columns), by_u.c, k=degrees[1], axis=1)
     # SciPy keeps the axis of interpolation first among the coefficients.
     control = np.moveaxis(by_v.c, 0, 1)
-    return InterpolatedSurface(step, degrees, (by_u.t, by_v.t), np.ascontiguousarray(control, dtype=np.float64))
+    return InterpolatedSurface(step, degrees, (by_u.t, by_v.t), np.ascontiguousarray(control), origin)

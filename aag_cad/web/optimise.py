@@ -142,7 +142,7 @@ def _descend(stage: _Stage, vertices: Floats, method: Method, done: list[Iterati
         step = gauss_newton_step(linear.jacobian, linear.residuals, damping, method.factorisation)
         move = np.asarray(stage.to_vertices @ step).reshape(vertices.shape)
         largest = float(np.abs(move).max())
-        done.append(Iteration(len(done), stage.name, weight, energies, largest))
+        done.append(Iteration(len(done), stage.name, energies, largest))
         report(done[-1])
         if not math.isfinite(largest):
             return vertices

@@ -1,4 +1,4 @@
-"""From a design to the web that the optimiser starts with, and from the optimised web back to a chart."""
+"""From a design to the web that the optimiser starts with."""
 
 import math
 from dataclasses import dataclass
@@ -8,46 +8,24 @@ import numpy as np
 from aag_cad.design import Design
 from aag_cad.design_tables import Optimise
 from aag_cad.geometry.revolution import AsymptoticChart
-from aag_cad.geometry.surface import Jet
-from aag_cad.units import Floats
 from aag_cad.web.goals import Goals, PointGoal
-from aag_cad.web.interpolation import InterpolatedSurface, interpolated_surface
 from aag_cad.web.web import Web, sampled_web
 
 _MARGIN_STEPS = 2
 
 
 @dataclass(frozen=True, eq=False)
-class WebChart:
-    """The smooth surface through a web in the parameters (s, theta): A lines theta = c +- s, G lines theta = const.
-
-    s = 0 is the bottom curve, theta = 0 the plane of symmetry; they are labels, no longer lengths or angles.
-    """
-
-    surface: InterpolatedSurface
-    first_s: float
-    first_theta: float
-
-    @property
-    def domain(self) -> tuple[float, float]:
-        """The range of s."""
-        low, high = self.surface.domain[0]
-        return low + self.first_s, high + self.first_s
-
-    def jet(self, u: Floats, v: Floats) -> Jet:
-        """Return the 2-jet at s = u and theta = v, each (n,) float; SurfaceError outside the web."""
-        return self.surface.jet(u - self.first_s, v - self.first_theta)
-
-
-@dataclass(frozen=True, eq=False)
 class StartWeb:
-    """A web over a shell and two steps more on every side, with the goals of its design, and where row 0 begins."""
+    """A web over a shell and two steps more on every side, with the goals of its design.
+
+    ``step`` is that of the cells in s and theta, ``origin`` where row and column 0 begin: s = 0 is the bottom curve,
+    theta = 0 the plane of symmetry. On the optimised web these are labels, no longer lengths or angles.
+    """
 
     web: Web
     goals: Goals
     step: float
-    first_s: float
-    first_theta: float
+    origin: tuple[float, float]
 
 
 def start_web(design: Design, wish: Optimise, chart: AsymptoticChart, crown: float) -> StartWeb:
@@ -77,9 +55,4 @@ def start_web(design: Design, wish: Optimise, chart: AsymptoticChart, crown: flo
         weights={str(name): weight for name, weight in wish.weights.items()},
         max_twist=None if wish.max_twist_deg_per_m is None else math.radians(wish.max_twist_deg_per_m) / 1000.0,
     )
-    return StartWeb(web, goals, cell, -margin * cell, first_theta)
-
-
-def web_chart(start: StartWeb, web: Web) -> WebChart:
-    """Return the chart of the surface interpolated through an optimised web."""
-    return WebChart(interpolated_surface(web, start.step), start.first_s, start.first_theta)
+    return StartWeb(web, goals, cell, (-margin * cell, first_theta))

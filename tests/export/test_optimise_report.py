@@ -36,8 +36,7 @@ def exact_web(columns: int = 15, rows: int = 10) -> Web:
 def optimised(web: Web, reason: Reason = "converged", explanation: str = "planarity per edge 4e-16") -> Optimised:
     """Return a web with a history of two stages whose energies are known, from a start 5 percent too high."""
     history = tuple(
-        Iteration(k, "spline" if k < 4 else "mesh", 10.0**-k, {"A-net": 10.0 ** -(3 * k), "twist": 0.0}, 0.5**k)
-        for k in range(7)
+        Iteration(k, "spline" if k < 4 else "mesh", {"A-net": 10.0 ** -(3 * k), "twist": 0.0}, 0.5**k) for k in range(7)
     )
     return Optimised(web, reason, explanation, history, web.vertices * np.array([1.0, 1.0, 1.05]))
 

@@ -115,7 +115,7 @@ def test_the_face_is_the_interpolated_surface(surface: InterpolatedSurface, shap
     spline = BRep_Tool.Surface_s(face)
     assert isinstance(spline, Geom_BSplineSurface)
     assert (spline.UDegree(), spline.VDegree()) == (5, 5)
-    (low, high), (left, right) = surface.domain
+    (low, high), (left, right) = surface.ranges
     grid = np.meshgrid(np.linspace(low, high, 6), np.linspace(left, right, 6))
     u, v = (part.ravel() for part in grid)
     points = (spline.Value(float(a), float(b)) for a, b in zip(u, v, strict=True))
