@@ -109,8 +109,8 @@ def ifc_times(file: ifcopenshell.file) -> Times:
     found: dict[int, tuple[str, datetime, datetime]] = {}
     for task in file.by_type("IfcTask"):
         number = ifcopenshell.util.element.get_pset(task, "AAG_Step", "StepNumber")
-        times = (datetime.fromisoformat(at) for at in (task.TaskTime.ScheduleStart, task.TaskTime.ScheduleFinish))
-        found[number] = (task.Name, *times)  # type: ignore[assignment]
+        begin, end = task.TaskTime.ScheduleStart, task.TaskTime.ScheduleFinish
+        found[number] = (task.Name, datetime.fromisoformat(begin), datetime.fromisoformat(end))
     return found
 
 
