@@ -62,7 +62,7 @@ class FramedCurve:
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Points and right-handed frames (tangent, binormal = normal x tangent, normal); each (n, 3) float."""
+    """Points and right-handed frames (tangent, binormal = normal x tangent, normal); each (n, 3) float, or (3,)."""
 
     point: Floats
     tangent: Floats
@@ -85,6 +85,12 @@ def frames_at(curve: FramedCurve, stations: Floats) -> Frames:
     raw = curve.normal_spline(stations)
     normal = unit(raw - dot(raw, tangent)[:, None] * tangent)
     return Frames(curve.point_spline(stations), tangent, np.cross(normal, tangent), normal)
+
+
+def frame_at(curve: FramedCurve, station: float) -> Frames:
+    """Return point and Darboux frame of a curve at one station; each (3,)."""
+    frames = frames_at(curve, np.array([station]))
+    return Frames(frames.point[0], frames.tangent[0], frames.binormal[0], frames.normal[0])
 
 
 def curvatures_at(curve: FramedCurve, stations: Floats) -> Curvatures:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from aag_cad.design import Design
-from aag_cad.geometry.framed import frames_at, nearest_station
+from aag_cad.geometry.framed import Frames, frame_at, nearest_station
 from aag_cad.geometry.revolution import turn
 from aag_cad.geometry.surface import unit
 from aag_cad.network.model import LEFT_RIDGE, RIGHT_RIDGE, CurveNetwork, NetworkCurve
@@ -42,27 +42,13 @@ class BladeJoint:
     right: tuple[Drilling, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class _Place:
-    """A place on the left ridge plank: point, length direction and outward normal of the plank, each (3,)."""
-
-    point: Floats
-    along: Floats
-    normal: Floats
-
-
 def _across(shells: int) -> Floats:
     """Return the level normal (3,) of the left ridge plane of the first shell, pointing away from that shell."""
     half = math.pi / shells
     return np.array([math.sin(half), -math.cos(half), 0.0])
 
 
-def _place(curve: NetworkCurve, station: float) -> _Place:
-    frames = frames_at(curve.curve, np.array([station]))
-    return _Place(frames.point[0], frames.tangent[0], frames.normal[0])
-
-
-def _blade(design: Design, mark: str, place: _Place, side: float) -> tuple[Blade, list[tuple[Bolt, Floats, Floats]]]:
+def _blade(design: Design, mark: str, place: Frames, side: float) -> tuple[Blade, list[tuple[Bolt, Floats, Floats]]]:
     """Return a blade on the inner (side -1) or outer face, and its bolts with centre and direction of their holes.
 
     The first two bolts are in the left plank of the first shell, the others are their mirror images.
@@ -156,15 +142,16 @@ def blade_joints(design: Design, network: CurveNetwork, among: Sequence[Obstacle
         near = [abs(other - station) for other in wished if other != station]
         reach = min(near, default=2.0 * margin) / 2.0
         for at in _tries(station, plank.start + margin, plank.end - margin, reach):
-            joint = _free_blade(design, len(found) + 1, _place(plank, at), among) if at - last > 2.0 * margin else None
-            if joint is not None:
+            if at - last <= 2.0 * margin:
+                continue
+            if joint := _free_blade(design, len(found) + 1, frame_at(plank.curve, at), among):
                 found.append(joint)
                 last = at
                 break
     return found
 
 
-def _free_blade(design: Design, index: int, place: _Place, among: Sequence[Obstacle]) -> BladeJoint | None:
+def _free_blade(design: Design, index: int, place: Frames, among: Sequence[Obstacle]) -> BladeJoint | None:
     """Return the blade at a place inside, else outside, or None where both are taken."""
     mark = str(Mark(0, ridge_name(1, 2), index))
     first, second = curve_mark(1, LEFT_RIDGE), curve_mark(2, RIGHT_RIDGE)

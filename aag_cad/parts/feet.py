@@ -8,15 +8,15 @@ import numpy as np
 from aag_cad.design import Design
 from aag_cad.errors import DesignError
 from aag_cad.families import FAMILIES
-from aag_cad.geometry.framed import frames_at
+from aag_cad.geometry.framed import frame_at, frames_at
 from aag_cad.geometry.surface import unit
-from aag_cad.network.model import Crossing, CurveId, CurveNetwork, NetworkCurve
-from aag_cad.parts.fasteners import axis_frame, hexagon_bolt, threaded_rod
+from aag_cad.network.model import Crossing, CurveNetwork, NetworkCurve
+from aag_cad.parts.fasteners import threaded_rod
 from aag_cad.parts.forms import FoldedPlate, Frame, PlateHole
-from aag_cad.parts.joints import BuiltJoint
+from aag_cad.parts.joints import BuiltJoint, Place, steel_bolt
 from aag_cad.parts.marks import Mark, part_mark
-from aag_cad.parts.members import Drilling, curve_mark
-from aag_cad.parts.model import Bolt, Footing, Joint, Rod, Shoe
+from aag_cad.parts.members import curve_mark
+from aag_cad.parts.model import Footing, Joint, Rod, Shoe
 from aag_cad.units import Floats, vector
 
 _ROD_SPARE = 6.0
@@ -42,8 +42,8 @@ def _beam_at(network: CurveNetwork, crossing: Crossing, reach: float) -> tuple[i
     for other in network.crossings:
         near = np.linalg.norm(np.subtract(other.point, crossing.point)) < reach
         if other.kind == "boundary" and other.curves[1] == crossing.curves[1] and near:
-            beam, station = other.curves[0], np.array([other.stations[0]])
-            return FAMILIES[beam.family].layer, frames_at(curves[beam].curve, station).tangent[0]
+            beam = other.curves[0]
+            return FAMILIES[beam.family].layer, frame_at(curves[beam].curve, other.stations[0]).tangent
     return None
 
 
@@ -133,26 +133,19 @@ def _plate(design: Design, site: _Site, rod: Rod) -> FoldedPlate:
     end = rod_x - site.side * (rod.washer_diameter / 2.0 + 8.0)
     whole = np.vstack([line, fold, [end, fold[1]]])
     run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(whole, axis=0), axis=1))])
-    along = {
-        s: float(np.interp(s, stations[::-1], run[: len(stations)][::-1])) for s, _, _ in _bolt_places(design, site)
-    }
-    holes = [
-        PlateHole(along[s], float(np.array(site.frame.y) @ _across(site, s)) * y, joints.bolt_hole)
-        for s, y, _ in _bolt_places(design, site)
-    ]
+    holes = []
+    for station, y, _ in _bolt_places(design, site):
+        along = float(np.interp(station, stations[::-1], run[: len(stations)][::-1]))
+        across = float(np.array(site.frame.y) @ frame_at(site.geodesic.curve, station).binormal)
+        holes.append(PlateHole(along, across * y, joints.bolt_hole))
     holes.append(PlateHole(float(run[-2] + abs(rod_x - fold[0])), 0.0, supports.rod_diameter + 2.0))
     return FoldedPlate(
         tuple((float(x), float(z)) for x, z in whole), supports.shoe_width, supports.shoe_thickness, tuple(holes)
     )
 
 
-def _across(site: _Site, station: float) -> Floats:
-    """Return the direction (3,) across the geodesic at a station of its curve."""
-    return np.asarray(frames_at(site.geodesic.curve, np.array([station])).binormal[0])
-
-
-def _bolt_places(design: Design, site: _Site) -> list[tuple[float, float, CurveId]]:
-    """Return (station on the geodesic's curve, offset across it, curve of the plank) of the four bolts of a foot.
+def _bolt_places(design: Design, site: _Site) -> list[Place]:
+    """Return the places on the geodesic's curve of the four bolts of a foot.
 
     Two side by side in the geodesic; two in the bottom plank, on the diagonal that is farther from the crossing beam.
     """
@@ -162,33 +155,11 @@ def _bolt_places(design: Design, site: _Site) -> list[tuple[float, float, CurveI
     y = design.supports.shoe_width / 2.0 - 15.0
     up = design.timber.width / 2.0 - clear
     foot = site.crossing.stations[0]
-    frames = frames_at(site.geodesic.curve, np.array([foot]))
-    lean = float((site.beam @ frames.tangent[0]) * (site.beam @ frames.binormal[0]))
+    at = frame_at(site.geodesic.curve, foot)
+    lean = float((site.beam @ at.tangent) * (site.beam @ at.binormal))
     turn = -1.0 if lean > 0.0 else 1.0
     inner = design.joints.bolt_offset
     return [(own, inner, geodesic), (own, -inner, geodesic), (foot + up, turn * y, edge), (foot - up, -turn * y, edge)]
-
-
-def _bolts(design: Design, site: _Site) -> tuple[list[Bolt], list[Drilling]]:
-    timber, plate = design.timber.thickness, design.supports.shoe_thickness
-    bolts, drillings = [], []
-    for i, (station, offset, curve) in enumerate(_bolt_places(design, site), start=1):
-        frames = frames_at(site.geodesic.curve, np.array([station]))
-        normal = site.side * frames.normal[0]
-        centre = frames.point[0] + offset * frames.binormal[0]
-        frame = axis_frame(centre + (timber / 2.0 + plate) * normal, -normal, frames.tangent[0])
-        bolts.append(hexagon_bolt(part_mark(site.mark, f"B{i}"), design.joints.bolt_diameter, timber + plate, frame))
-        drillings.append(
-            Drilling(
-                curve_mark(site.mark.shell, curve),
-                vector(centre),
-                vector(normal),
-                design.joints.bolt_hole,
-                "bolt",
-                str(site.mark),
-            )
-        )
-    return bolts, drillings
 
 
 def foot_joints(design: Design, network: CurveNetwork, mark: Mark, crossing: Crossing) -> list[BuiltJoint]:
@@ -204,8 +175,12 @@ def foot_joints(design: Design, network: CurveNetwork, mark: Mark, crossing: Cro
     footing = Footing(
         block, Frame(vector(top), *(site.frame.x, site.frame.y, site.frame.z)), *design.supports.block_size
     )
-    bolts, drillings = _bolts(design, site)
+    bolted = [
+        steel_bolt(design, mark, i, site.geodesic.curve, place, site.side, design.supports.shoe_thickness)
+        for i, place in enumerate(_bolt_places(design, site), start=1)
+    ]
+    bolts, drillings = zip(*bolted, strict=True)
     members = (*(curve_mark(mark.shell, curve) for curve in crossing.curves), shoe.mark)
-    bolted = Joint(str(mark), "foot", crossing.point, crossing.normal, members, tuple(bolt.mark for bolt in bolts))
+    shod = Joint(str(mark), "foot", crossing.point, crossing.normal, members, tuple(bolt.mark for bolt in bolts))
     stood = Joint(block, "footing", footing.frame.origin, footing.frame.z, (shoe.mark, footing.mark), (rod.mark,))
-    return [BuiltJoint(bolted, (shoe, *bolts), tuple(drillings)), BuiltJoint(stood, (rod, footing), ())]
+    return [BuiltJoint(shod, (shoe, *bolts), drillings), BuiltJoint(stood, (rod, footing), ())]

@@ -1,18 +1,23 @@
 """The joints of beams: studs with their bolts, coupling blocks with bolt and screw."""
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from aag_cad.design import Design
+from aag_cad.geometry.framed import FramedCurve, frame_at
 from aag_cad.geometry.surface import unit
-from aag_cad.network.model import Crossing
+from aag_cad.network.model import Crossing, CurveId
 from aag_cad.parts.fasteners import axis_frame, hexagon_bolt, wood_screw
 from aag_cad.parts.forms import CrossHole, Frame, Hole
 from aag_cad.parts.marks import Mark, part_mark
-from aag_cad.parts.members import Drilling, beam_axes, curve_mark
+from aag_cad.parts.members import Drilling, curve_mark
 from aag_cad.parts.model import Beam, Bolt, CouplingBlock, Joint, Part, Stud
 from aag_cad.units import Floats, vector
+
+# Station on a curve, offset across it, and the curve of the plank that a bolt passes there.
+Place: TypeAlias = tuple[float, float, CurveId]
 
 
 @dataclass(frozen=True)
@@ -31,11 +36,11 @@ def _beam_bolt(
 
     ``slot`` is how much longer than round the holes are, along the planks.
     """
-    point, _tangent, across, normal = beam_axes(beam, station)
-    centre = point + offset * normal
+    at = frame_at(beam.curve, station)
+    across, centre = at.binormal, at.point + offset * at.normal
     grip = design.joints.gap + 2 * design.timber.thickness
     bolt = hexagon_bolt(
-        mark, design.joints.bolt_diameter, grip, axis_frame(centre + grip / 2.0 * across, -across, normal)
+        mark, design.joints.bolt_diameter, grip, axis_frame(centre + grip / 2.0 * across, -across, at.normal)
     )
     drillings = tuple(
         Drilling(
@@ -50,6 +55,22 @@ def _beam_bolt(
         for plank, sign in zip(beam.planks, (1.0, -1.0), strict=True)
     )
     return bolt, drillings
+
+
+def steel_bolt(
+    design: Design, mark: Mark, number: int, curve: FramedCurve, place: Place, side: float, steel: float
+) -> tuple[Bolt, Drilling]:
+    """Return a bolt through steel of a thickness and the plank at a place on a curve, and the drilling of the plank.
+
+    The steel lies on the inner (``side`` -1) or outer face of the plank, the head on the steel.
+    """
+    station, offset, plank = place
+    at, timber = frame_at(curve, station), design.timber.thickness
+    normal, centre = side * at.normal, at.point + offset * at.binormal
+    frame = axis_frame(centre + (timber / 2.0 + steel) * normal, -normal, at.tangent)
+    bolt = hexagon_bolt(part_mark(mark, f"B{number}"), design.joints.bolt_diameter, timber + steel, frame)
+    axis = vector(centre), vector(normal)
+    return bolt, Drilling(curve_mark(mark.shell, plank), *axis, design.joints.bolt_hole, "bolt", str(mark))
 
 
 def _stud_direction(directions: list[Floats], normal: Floats) -> Floats:
@@ -67,7 +88,7 @@ def node_joint(design: Design, mark: Mark, crossing: Crossing, beams: list[Beam]
     The planks' holes are slots if the design asks for them, so that the node can turn while the web is deployed.
     """
     point, normal = np.array(crossing.point), np.array(crossing.normal)
-    across = [beam_axes(beam, station)[2] for beam, station in zip(beams, stations, strict=True)]
+    across = [frame_at(beam.curve, station).binormal for beam, station in zip(beams, stations, strict=True)]
     frame = axis_frame(point, normal, _stud_direction(across, normal))
     bolts: list[Bolt] = []
     drillings: list[Drilling] = []
@@ -97,8 +118,8 @@ def block_joint(design: Design, mark: Mark, crossing: Crossing, beam: Beam, stat
     shell = mark.shell
     length, away = design.joints.block_length, float(beam.layer)
     place = min(max(station, length / 2.0), beam.curve.length - length / 2.0)
-    point, tangent, across, normal = beam_axes(beam, place)
-    frame = Frame(vector(point), vector(tangent), vector(normal), vector(-across))
+    at = frame_at(beam.curve, place)
+    frame = Frame(vector(at.point), vector(at.tangent), vector(at.normal), vector(-at.binormal))
     offset = away * design.joints.bolt_offset
     bolt, drillings = _beam_bolt(design, part_mark(mark, "B1"), str(mark), beam, place, offset)
     block = CouplingBlock(
@@ -115,7 +136,7 @@ def block_joint(design: Design, mark: Mark, crossing: Crossing, beam: Beam, stat
         part_mark(mark, "W1"),
         design.joints.screw_diameter,
         design.joints.screw_length,
-        axis_frame(head, away * up, tangent),
+        axis_frame(head, away * up, at.tangent),
     )
     plank = curve_mark(shell, crossing.curves[1])
     drilling = Drilling(plank, crossing.point, crossing.normal, design.joints.screw_hole, "screw", str(mark))

@@ -8,7 +8,7 @@ import numpy as np
 
 from aag_cad.design import Design
 from aag_cad.families import FAMILIES, Family
-from aag_cad.geometry.framed import FramedCurve, frames_at, nearest_station, offset_curve
+from aag_cad.geometry.framed import FramedCurve, nearest_station, offset_curve
 from aag_cad.network.model import CurveId, CurveNetwork
 from aag_cad.parts.forming import axis_piercings
 from aag_cad.parts.forms import Blank, CrossSection, Hole, HoleUse
@@ -104,9 +104,3 @@ def grouped(drillings: Iterable[Drilling]) -> dict[str, list[Drilling]]:
     for drilling in drillings:
         groups[drilling.plank].append(drilling)
     return groups
-
-
-def beam_axes(beam: Beam, station: float) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return point, tangent, binormal and normal, each (3,), of a beam's curve at a station."""
-    frames = frames_at(beam.curve, np.array([station]))
-    return frames.point[0], frames.tangent[0], frames.binormal[0], frames.normal[0]

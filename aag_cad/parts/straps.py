@@ -3,23 +3,21 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import TypeAlias
 
 import numpy as np
 
 from aag_cad.design import Design
 from aag_cad.families import GEODESICS
-from aag_cad.geometry.framed import FramedCurve, framed_curve, frames_at, nearest_station, offset_curve
+from aag_cad.geometry.framed import FramedCurve, frame_at, framed_curve, frames_at, nearest_station, offset_curve
 from aag_cad.geometry.surface import unit
 from aag_cad.network.model import Crossing, CurveId, CurveNetwork, NetworkCurve
 from aag_cad.parts.clearance import Obstacle, is_free, placed_points
-from aag_cad.parts.fasteners import axis_frame, hexagon_bolt
 from aag_cad.parts.forms import Blank, CrossSection, Hole
-from aag_cad.parts.joints import BuiltJoint
-from aag_cad.parts.marks import Mark, part_mark
-from aag_cad.parts.members import Drilling, curve_mark
-from aag_cad.parts.model import Bolt, Joint, Part, Strap
-from aag_cad.units import Floats, vector
+from aag_cad.parts.joints import BuiltJoint, Place, steel_bolt
+from aag_cad.parts.marks import Mark
+from aag_cad.parts.members import curve_mark
+from aag_cad.parts.model import Joint, Part, Strap
+from aag_cad.units import Floats
 
 _STEEL_END = 20.0
 _FARTHEST = 160.0
@@ -27,16 +25,12 @@ _BACK = 10.0
 _PAST = 60.0
 
 
-# Station on the strap's line, offset across it, and the plank that the bolt passes.
-_Place: TypeAlias = tuple[float, float, CurveId]
-
-
 @dataclass(frozen=True, eq=False)
 class _StrapLine:
     """The line of a strap on the surface and, for each of the two planks, ways to place its bolts, the best first."""
 
     curve: FramedCurve
-    ways: tuple[tuple[tuple[_Place, ...], ...], tuple[tuple[_Place, ...], ...]]
+    ways: tuple[tuple[tuple[Place, ...], ...], tuple[tuple[Place, ...], ...]]
 
 
 def _line_over_geodesic(design: Design, geodesic: NetworkCurve, crossing: Crossing) -> _StrapLine:
@@ -65,8 +59,8 @@ def _line_over_crown(
     ends = []
     for curve in (curves[name] for name in crossing.curves):
         nearer_start = crossing.stations[0] - curve.start < curve.end - crossing.stations[0]
-        frames = frames_at(curve.curve, np.array([curve.start + back if nearer_start else curve.end - back]))
-        ends.append((frames.point[0], frames.normal[0]))
+        at = frame_at(curve.curve, curve.start + back if nearer_start else curve.end - back)
+        ends.append((at.point, at.normal))
     (a, n), (b, m) = ends
     reach = float(np.linalg.norm(b - a))
 
@@ -82,21 +76,7 @@ def _line_over_crown(
     return _StrapLine(line, ((first,), (last,)))
 
 
-def _bolt(
-    design: Design, mark: Mark, number: int, line: _StrapLine, place: _Place, side: float
-) -> tuple[Bolt, Drilling]:
-    """Return a bolt through strap and plank, head on the strap, and the drilling of the plank."""
-    station, offset, plank = place
-    timber, grip = design.timber.thickness, design.timber.thickness + design.ridge.strap_thickness
-    frames = frames_at(line.curve, np.array([station]))
-    normal, centre = side * frames.normal[0], frames.point[0] + offset * frames.binormal[0]
-    frame = axis_frame(centre + (grip - timber / 2.0) * normal, -normal, frames.tangent[0])
-    bolt = hexagon_bolt(part_mark(mark, f"B{number}"), design.joints.bolt_diameter, grip, frame)
-    axis = vector(centre), vector(normal)
-    return bolt, Drilling(curve_mark(mark.shell, plank), *axis, design.joints.bolt_hole, "bolt", str(mark))
-
-
-def _strap(design: Design, mark: Mark, line: _StrapLine, places: Sequence[_Place], side: float) -> Strap:
+def _strap(design: Design, mark: Mark, line: _StrapLine, places: Sequence[Place], side: float) -> Strap:
     """Return the strap on the inner (side -1) or outer face, just long enough for its bolts."""
     ridge = design.ridge
     at = np.array([station for station, _, _ in places])
@@ -112,10 +92,11 @@ def _strap(design: Design, mark: Mark, line: _StrapLine, places: Sequence[_Place
 
 
 def _strapped(
-    design: Design, mark: Mark, crossing: Crossing, line: _StrapLine, places: Sequence[_Place], side: float
+    design: Design, mark: Mark, crossing: Crossing, line: _StrapLine, places: Sequence[Place], side: float
 ) -> BuiltJoint:
     strap = _strap(design, mark, line, places, side)
-    bolted = [_bolt(design, mark, i, line, place, side) for i, place in enumerate(places, start=1)]
+    steel = design.ridge.strap_thickness
+    bolted = [steel_bolt(design, mark, i, line.curve, place, side, steel) for i, place in enumerate(places, start=1)]
     members = (*(curve_mark(mark.shell, name) for name in crossing.curves), strap.mark)
     fasteners = tuple(bolt.mark for bolt, _ in bolted)
     joint = Joint(str(mark), "ridge", crossing.point, crossing.normal, members, fasteners)
@@ -144,8 +125,10 @@ def strap_joint(
     def free(*parts: Part) -> bool:
         return all(is_free(placed_points(part), others) for part in parts)
 
-    def first_free(line: _StrapLine, ways: tuple[tuple[_Place, ...], ...], side: float) -> tuple[_Place, ...] | None:
-        return next((way for way in ways if free(*(_bolt(design, mark, 1, line, at, side)[0] for at in way))), None)
+    def first_free(line: _StrapLine, ways: tuple[tuple[Place, ...], ...], side: float) -> tuple[Place, ...] | None:
+        steel = design.ridge.strap_thickness
+        bolts = ((way, [steel_bolt(design, mark, 1, line.curve, at, side, steel)[0] for at in way]) for way in ways)
+        return next((way for way, bolted in bolts if free(*bolted)), None)
 
     for line, side in product(lines, (-1.0, 1.0)):
         chosen = [first_free(line, ways, side) for ways in line.ways]
