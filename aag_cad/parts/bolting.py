@@ -9,7 +9,7 @@ import numpy as np
 from aag_cad.parts.forming import formed_points
 from aag_cad.parts.forms import UNMOVED, Frame
 from aag_cad.parts.marks import joint_of
-from aag_cad.parts.mesh import frame_matrix
+from aag_cad.parts.mesh import frame_matrix, moved
 from aag_cad.parts.model import Blade, Bolt, Gridshell, Plank, Shell, Shoe, Strap
 from aag_cad.parts.shapes.folded_plate import hole_axes
 from aag_cad.units import Floats
@@ -40,9 +40,8 @@ def _flat_holes(bar: Plank | Strap, placement: Frame) -> Iterator[tuple[str, str
     holes = [hole for hole in bar.blank.holes if hole.use == "bolt"]
     if not holes:
         return
-    matrix = frame_matrix(placement)
     centres = formed_points(bar, np.array([[hole.station, hole.offset, 0.0] for hole in holes]))
-    placed = centres @ matrix[:3, :3].T + matrix[:3, 3]
+    placed = moved(centres, frame_matrix(placement))
     yield from ((bar.mark, hole.joint, hole.station, centre) for hole, centre in zip(holes, placed, strict=True))
 
 

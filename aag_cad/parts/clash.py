@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from aag_cad.parts.forms import UNMOVED, Frame
+from aag_cad.parts.forms import UNMOVED
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import shaped
-from aag_cad.parts.mesh import depths_in, frame_matrix, surface_points
+from aag_cad.parts.mesh import depths_in, frame_matrix, moved, part_matrix, surface_points
 from aag_cad.parts.model import Gridshell, Part, all_joints, ridge_parts, shell_parts
-from aag_cad.parts.products import part_frame
 from aag_cad.units import Floats, Vector, vector
 
 _STRETCH = 250.0
@@ -48,18 +47,11 @@ class _Body:
     matrix: Floats
 
 
-def _body(part: Part, key: str, shell: int, placement: Frame) -> _Body:
-    matrix = frame_matrix(placement)
-    if (frame := part_frame(part)) is not None:
-        matrix = matrix @ frame_matrix(frame)
-    return _Body(part, key, shell, matrix)
-
-
 def _pieces(index: int, body: _Body, groups: list[Floats]) -> Iterator[_Piece]:
     """Yield groups of a part's surface points, given in product coordinates, where the part is."""
     for group in groups:
-        moved = group @ body.matrix[:3, :3].T + body.matrix[:3, 3]
-        yield _Piece(index, moved, np.array([moved.min(axis=0), moved.max(axis=0)]))
+        points = moved(group, body.matrix)
+        yield _Piece(index, points, np.array([points.min(axis=0), points.max(axis=0)]))
 
 
 def _point_groups(part: Part) -> list[Floats]:
@@ -109,7 +101,11 @@ def clashes(gridshell: Gridshell, limit: float) -> list[Clash]:
     shells, keys, twins = gridshell.shells, index_of(gridshell).keys, index_of(gridshell).twins
     wholes = [(i, shell.placement, shell_parts(shell)) for i, shell in enumerate(shells)]
     wholes.append((_BETWEEN, UNMOVED, ridge_parts(gridshell)))
-    bodies = [_body(part, keys[part.mark], i, placement) for i, placement, parts in wholes for part in parts]
+    bodies = [
+        _Body(part, keys[part.mark], i, frame_matrix(placement) @ part_matrix(part))
+        for i, placement, parts in wholes
+        for part in parts
+    ]
     # What happens inside a shell happens inside its twins.
     own, repeated = _own_pairs(gridshell), {i for i, shell in enumerate(shells) if twins[shell.mark] != shell.mark}
     samples = {body.key: _point_groups(body.part) for body in {body.key: body for body in bodies}.values()}

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from aag_cad.parts.forms import Frame
-from aag_cad.parts.mesh import depths_in, frame_matrix, placed, shell_mesh, surface_points
+from aag_cad.parts.mesh import depths_in, frame_matrix, moved, part_matrix, placed, shell_mesh, surface_points
 from aag_cad.parts.model import Part
 from aag_cad.parts.products import part_frame
 from aag_cad.units import Floats, Vector
@@ -32,9 +32,8 @@ def obstacles(parts: Iterable[Part], placement: Frame) -> list[Obstacle]:
     found = []
     for part in parts:
         vertices = placed(shell_mesh(part), placement).vertices
-        frame = part_frame(part)
-        matrix = frame_matrix(placement) @ (np.eye(4) if frame is None else frame_matrix(frame))
-        found.append(Obstacle(part, _boxes(vertices, frame is None), matrix))
+        matrix = frame_matrix(placement) @ part_matrix(part)
+        found.append(Obstacle(part, _boxes(vertices, part_frame(part) is None), matrix))
     return found
 
 
@@ -67,11 +66,7 @@ def _dense(points: Floats) -> Floats:
 
 def placed_points(part: Part) -> Floats:
     """Return points on the surface of a part (n, 3) in the coordinates that its frame is given in."""
-    points, frame = surface_points(part), part_frame(part)
-    if frame is None:
-        return points
-    matrix = frame_matrix(frame)
-    return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
+    return moved(surface_points(part), part_matrix(part))
 
 
 def is_free(points: Floats, among: Iterable[Obstacle], limit: float = CONTACT) -> bool:

@@ -23,6 +23,11 @@ def _catalogue() -> dict[str, dict[str, Any]]:
         return tomllib.load(file)
 
 
+def _of_size(diameter: float, *names: str) -> dict[str, Any]:
+    size = _catalogue()[f"M{diameter:g}"]
+    return {name: size[name] for name in ("across_flats", "nut_height", "washer_diameter", "washer_thickness", *names)}
+
+
 def axis_frame(origin: Floats, direction: Floats, side: Floats) -> Frame:
     """Return the frame with z along ``direction`` and x as near to ``side`` as it can be; all (3,)."""
     z = unit(direction)
@@ -49,28 +54,14 @@ def hexagon_bolt(mark: str, diameter: float, grip: float, frame: Frame) -> Bolt:
         diameter=float(diameter),
         length=float(lengths[0]),
         grip=grip,
-        across_flats=size["across_flats"],
-        head_height=size["head_height"],
-        nut_height=size["nut_height"],
-        washer_diameter=size["washer_diameter"],
-        washer_thickness=size["washer_thickness"],
+        **_of_size(diameter, "head_height"),
     )
 
 
 def threaded_rod(mark: str, diameter: float, length: float, nuts: tuple[float, float], frame: Frame) -> Rod:
     """Return a threaded rod (DIN 976-1) with ISO 4032 nuts and ISO 7089 washers at two heights over its lower end."""
-    size = _catalogue()[f"M{diameter:g}"]
-    return Rod(
-        mark=mark,
-        frame=frame,
-        diameter=float(diameter),
-        length=length,
-        nuts=nuts,
-        across_flats=size["across_flats"],
-        nut_height=size["nut_height"],
-        washer_diameter=size["washer_diameter"],
-        washer_thickness=size["washer_thickness"],
-    )
+    sizes = _of_size(diameter)
+    return Rod(mark=mark, frame=frame, diameter=float(diameter), length=length, nuts=nuts, **sizes)
 
 
 def wood_screw(mark: str, diameter: float, length: float, frame: Frame) -> Screw:

@@ -35,10 +35,20 @@ def frame_matrix(frame: Frame) -> Floats:
     return matrix
 
 
+def part_matrix(part: Part) -> Floats:
+    """Return the (4, 4) matrix from product coordinates to those that a part's frame is given in, if it has one."""
+    frame = part_frame(part)
+    return np.eye(4) if frame is None else frame_matrix(frame)
+
+
+def moved(points: Floats, matrix: Floats) -> Floats:
+    """Return points (..., 3) moved by a matrix (4, 4)."""
+    return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
+
+
 def placed(mesh: Mesh, frame: Frame) -> Mesh:
     """Return a mesh moved from a frame's local coordinates to those that the frame is given in."""
-    matrix = frame_matrix(frame)
-    return Mesh(mesh.vertices @ matrix[:3, :3].T + matrix[:3, 3], mesh.faces)
+    return Mesh(moved(mesh.vertices, frame_matrix(frame)), mesh.faces)
 
 
 def shell_mesh(part: Part) -> Mesh:

@@ -46,7 +46,7 @@ def section_area(part: Part) -> float:
 def gross_volume(part: Part) -> float:
     """Return the volume before drilling, mm3; of a bolt with head, nut and washers; of a screw as a plain cylinder."""
     shape, form = shaped(part)
-    return shape.gross_volume(form)
+    return shape.gross_volume(form) if shape.gross_volume else shape.section(form) * shape.sizes(form)[0]
 
 
 def volume(part: Part) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 
 from aag_cad.colours import LEGEND, srgb
 from aag_cad.parts.kinds import kind_of
-from aag_cad.parts.mesh import frame_matrix, shell_mesh
+from aag_cad.parts.mesh import frame_matrix, moved, shell_mesh
 from aag_cad.parts.model import Footing, Gridshell, Part, Shell, Stud, ridge_parts, shell_parts
 from aag_cad.parts.triangles import regular_polygon
 from aag_cad.units import Floats
@@ -28,8 +28,7 @@ class Faces:
 
 def placed_points(points: Floats, shell: Shell) -> Floats:
     """Return points (..., 3) of a shell in vault coordinates."""
-    matrix = frame_matrix(shell.placement)
-    return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
+    return moved(points, frame_matrix(shell.placement))
 
 
 def tube_faces(rings: Floats) -> Floats:
@@ -49,16 +48,14 @@ def _stud_faces(stud: Stud) -> Floats:
     ring = np.column_stack([regular_polygon(6, stud.across_flats), np.zeros(6)])
     heights = np.linspace(-stud.length / 2.0, stud.length / 2.0, _STUD_PIECES + 1)
     rings = np.array([ring + np.array([0.0, 0.0, height]) for height in heights])
-    matrix = frame_matrix(stud.frame)
-    return tube_faces(rings @ matrix[:3, :3].T + matrix[:3, 3])
+    return tube_faces(moved(rings, frame_matrix(stud.frame)))
 
 
 def _top_face(footing: Footing) -> Floats:
     """Return all that is seen of a concrete block over the ground, (1, 4, 3)."""
     x, y = footing.length / 2.0, footing.width / 2.0
     corners = np.array([(-x, -y, 0.0), (x, -y, 0.0), (x, y, 0.0), (-x, y, 0.0)])
-    matrix = frame_matrix(footing.frame)
-    return np.asarray(corners @ matrix[:3, :3].T + matrix[:3, 3])[None]
+    return moved(corners, frame_matrix(footing.frame))[None]
 
 
 def picture_spacing(gridshell: Gridshell) -> float:

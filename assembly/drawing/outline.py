@@ -10,7 +10,7 @@ from aag_cad.geometry.surface import unit
 from aag_cad.parts.index import index_of
 from aag_cad.parts.kinds import Kind, Place, kind_of, parts_at
 from aag_cad.parts.marks import shell_of
-from aag_cad.parts.mesh import frame_matrix
+from aag_cad.parts.mesh import frame_matrix, moved
 from aag_cad.parts.model import Gridshell, Joint, Part, Shell, ridge_parts, shell_parts
 from aag_cad.units import Floats, Vector
 from assembly.base.shell_axes import View, elevation_view, shell_view, vault_view
@@ -69,7 +69,7 @@ def _outline(
 
     def on_sheet(matrix: Floats) -> Flat:
         def flat(points: Floats) -> Floats:
-            seen = view(points @ matrix[:3, :3].T + matrix[:3, 3])
+            seen = view(moved(points, matrix))
             return np.column_stack([seen[:, 0], -seen[:, 1]])
 
         return flat
@@ -139,8 +139,8 @@ def ridge_outline(gridshell: Gridshell, pair: Sequence[str], width: float, margi
     """
     index, ends = index_of(gridshell), []
     for mark in pair:
-        matrix = frame_matrix(index.shells[shell_of(mark)].placement)
-        points = index.planks[mark].curve.points[[0, -1]] @ matrix[:3, :3].T + matrix[:3, 3]
+        placement = frame_matrix(index.shells[shell_of(mark)].placement)
+        points = moved(index.planks[mark].curve.points[[0, -1]], placement)
         ends.append(points[np.argsort(-points[:, 2])])
     crown, side = np.mean(ends, axis=0)
     along = unit((side - crown) * [1.0, 1.0, 0.0])

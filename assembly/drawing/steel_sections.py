@@ -11,7 +11,7 @@ from aag_cad.parts.forming import formed_points
 from aag_cad.parts.forms import FoldedPlate, Frame
 from aag_cad.parts.index import index_of
 from aag_cad.parts.marks import shell_of
-from aag_cad.parts.mesh import frame_matrix
+from aag_cad.parts.mesh import frame_matrix, moved
 from aag_cad.parts.model import Blade, Bolt, FlatBar, Gridshell, Joint, Plank, Shell, Shoe, Strap
 from aag_cad.parts.shapes.folded_plate import plate_rings
 from aag_cad.parts.shapes.threaded import BoltPiece, bolt_form, rod_form
@@ -49,10 +49,6 @@ def _in_frame(frame: Frame) -> Flat:
     return flat
 
 
-def _placed(points: Floats, matrix: Floats) -> Floats:
-    return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
-
-
 def _band(bar: FlatBar, low: float, high: float) -> Floats:
     """Return the outline of a flat bar seen on its narrow edge between two stations, (n, 3)."""
     stations, half = np.linspace(low, high, 24), bar.blank.section.thickness / 2.0
@@ -65,7 +61,7 @@ def _cross(plank: Plank, joint: str, matrix: Floats = _NEAR) -> Floats:
     station = next(place.station for place in plank.joints if place.joint == joint)
     y, z = plank.blank.section.width / 2.0, plank.blank.section.thickness / 2.0
     corners = [(station, -y, -z), (station, y, -z), (station, y, z), (station, -y, z)]
-    return _placed(formed_points(plank, np.array(corners)), matrix)
+    return moved(formed_points(plank, np.array(corners)), matrix)
 
 
 def _plate(plate: FoldedPlate) -> Floats:

@@ -11,7 +11,7 @@ from aag_cad.parts.forms import UNMOVED, Frame
 from aag_cad.parts.index import Index, index_of
 from aag_cad.parts.kinds import kind_of, shaped
 from aag_cad.parts.marks import parse_mark, shell_of
-from aag_cad.parts.mesh import frame_matrix
+from aag_cad.parts.mesh import frame_matrix, moved
 from aag_cad.parts.model import Gridshell, Joint, Part, Shell, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame
 from aag_cad.parts.quantities import mass, sizes
@@ -135,8 +135,7 @@ def _crossings(shell: Shell) -> Iterator[tuple[str, str, JointEdge]]:
 
 
 def _placed(points: Floats, placement: Frame) -> list[Vector]:
-    matrix = frame_matrix(placement)
-    return [vector(point) for point in points @ matrix[:3, :3].T + matrix[:3, 3]]
+    return [vector(point) for point in moved(points, frame_matrix(placement))]
 
 
 def _add_planks(graph: "nx.MultiGraph[str]", shell: Shell, min_radius: float) -> None:

@@ -12,7 +12,7 @@ from aag_cad.colours import srgb
 from aag_cad.errors import FileError
 from aag_cad.families import FAMILIES
 from aag_cad.files import write_bytes
-from aag_cad.parts.mesh import frame_matrix
+from aag_cad.parts.mesh import frame_matrix, moved
 from aag_cad.parts.model import FlatBar, Gridshell
 from aag_cad.units import Floats
 
@@ -65,7 +65,7 @@ def _user_text(plank: FlatBar) -> dict[str, str]:
 def _nurbs(rhino: Any, plank: FlatBar, placement: Floats) -> Any:
     """Return a plank's centre line, moved by a (4, 4) matrix, by arc length in mm."""
     spline = plank.curve.point_spline
-    points = spline.c @ placement[:3, :3].T + placement[:3, 3]
+    points = moved(spline.c, placement)
     curve = rhino.NurbsCurve(spline.k, len(points))
     for i, (x, y, z) in enumerate(points.tolist()):
         curve.Points[i] = rhino.Point4d(x, y, z, 1.0)

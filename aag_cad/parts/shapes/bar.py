@@ -36,17 +36,13 @@ def _section(bar: FlatBar) -> float:
     return bar.blank.section.width * bar.blank.section.thickness
 
 
-def _gross(bar: FlatBar) -> float:
-    """Return section x length: the centre line of a bent and twisted bar runs through the centroid of its section.
+def _volume(bar: FlatBar) -> float:
+    """Return the volume less the holes: the centre line of a bent and twisted bar runs through its section's centroid.
 
     End cuts turn about the ends of the centre line and so leave the volume alone.
     """
-    return _section(bar) * bar.blank.length
-
-
-def _volume(bar: FlatBar) -> float:
     bored = sum(circle_area(hole.diameter) + hole.slot * hole.diameter for hole in bar.blank.holes)
-    return _gross(bar) - bar.blank.section.thickness * bored
+    return _section(bar) * bar.blank.length - bar.blank.section.thickness * bored
 
 
 def _points(bar: FlatBar) -> Floats:
@@ -93,7 +89,6 @@ BAR = Shape[FlatBar](
     name="bar",
     sizes=_sizes,
     section=_section,
-    gross_volume=_gross,
     volume=_volume,
     mesh=plank_mesh,
     points=_points,

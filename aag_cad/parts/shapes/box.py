@@ -41,12 +41,9 @@ def box_points(length: float, width: float, thickness: float) -> Floats:
     return np.concatenate([np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, 3) for grid in grids])
 
 
-def _gross(box: Box) -> float:
-    return box.width * box.thickness * box.length
-
-
 def _volume(box: Box) -> float:
-    return _gross(box) - box.thickness * sum(circle_area(hole.diameter) for hole in box.holes)
+    bored = box.thickness * sum(circle_area(hole.diameter) for hole in box.holes)
+    return box.width * box.thickness * box.length - bored
 
 
 def _mesh(box: Box) -> Mesh:
@@ -69,7 +66,6 @@ BOX = Shape[Box](
     name="box",
     sizes=lambda box: (box.length, box.width, box.thickness),
     section=lambda box: box.width * box.thickness,
-    gross_volume=_gross,
     volume=_volume,
     mesh=_mesh,
     points=_points,

@@ -49,13 +49,8 @@ def plate_rings(plate: FoldedPlate) -> Floats:
     return np.stack([lower - across, lower + across, upper + across, upper - across], axis=1)
 
 
-def _gross(plate: FoldedPlate) -> float:
-    """Return section x length: mitred folds keep it."""
-    return plate.width * plate.thickness * developed_length(plate)
-
-
 def plate_volume(plate: FoldedPlate) -> float:
-    """Return the volume less the holes, mm3."""
+    """Return the volume less the holes, mm3; mitred folds keep section x length."""
     bored = sum(np.pi / 4.0 * hole.diameter**2 for hole in plate.holes)
     return float(plate.thickness * (developed_length(plate) * plate.width - bored))
 
@@ -104,7 +99,6 @@ FOLDED_PLATE = Shape[FoldedPlate](
     name="folded plate",
     sizes=lambda plate: (developed_length(plate), plate.width, plate.thickness),
     section=lambda plate: plate.width * plate.thickness,
-    gross_volume=_gross,
     volume=plate_volume,
     mesh=lambda plate: tube(plate_rings(plate)),
     points=lambda plate: leg_points(plate, _POINT_SPACING),

@@ -31,12 +31,9 @@ def _cross_hole_volume(across_flats: float, angle: float, diameter: float) -> fl
     return float(diameter**2 / 2.0 * (weight @ chord))
 
 
-def _gross(stud: Stud) -> float:
-    return hexagon_area(stud.across_flats) * stud.length
-
-
 def _volume(stud: Stud) -> float:
-    return _gross(stud) - sum(_cross_hole_volume(stud.across_flats, hole.angle, hole.diameter) for hole in stud.holes)
+    bored = sum(_cross_hole_volume(stud.across_flats, hole.angle, hole.diameter) for hole in stud.holes)
+    return hexagon_area(stud.across_flats) * stud.length - bored
 
 
 def _mesh(stud: Stud) -> Mesh:
@@ -63,7 +60,6 @@ PRISM = Shape[Stud](
     name="prism",
     sizes=lambda stud: (stud.length, stud.across_flats, stud.across_flats),
     section=lambda stud: hexagon_area(stud.across_flats),
-    gross_volume=_gross,
     volume=_volume,
     mesh=_mesh,
     points=lambda stud: column_points(_mesh(stud)),

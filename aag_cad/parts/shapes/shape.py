@@ -17,18 +17,19 @@ class Shape(Generic[Form]):
     """One shape, as functions of a form: what a part is to this shape (``aag_cad.parts.kinds.Kind.form``).
 
     Lengths in mm, in product coordinates: those of the part's frame, or of its shell where it has none. ``sizes`` are
-    (length, width, thickness); ``section`` is the area of the cross-section; ``gross_volume`` is before drilling,
-    ``volume`` less the holes, which must not meet. ``points`` (n, 3) lie on the surface; ``depths`` says how deep
-    points (n, 3) lie inside, (n,), negative outside. ``lines`` are the curves that the form runs along, if any.
+    (length, width, thickness); ``section`` is the area of the cross-section; ``volume`` is less the holes, which must
+    not meet, ``gross_volume`` before drilling: without it, section x length. ``points`` (n, 3) lie on the surface;
+    ``depths`` says how deep points (n, 3) lie inside, (n,), negative outside. ``lines`` are the curves that the form
+    runs along, if any.
     """
 
     name: ShapeName
     sizes: Callable[[Form], tuple[float, float, float]]
     section: Callable[[Form], float]
-    gross_volume: Callable[[Form], float]
     volume: Callable[[Form], float]
     mesh: Callable[[Form], Mesh]
     points: Callable[[Form], Floats]
     depths: Callable[[Form, Floats], Floats]
     holes: Callable[[Form], Sequence[Any]] = lambda _: ()
     lines: Callable[[Form], tuple[FramedCurve, ...]] = lambda _: ()
+    gross_volume: Callable[[Form], float] | None = None
