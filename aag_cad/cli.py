@@ -257,7 +257,8 @@ def plan(
     if as_json:
         print(plan_json(result.file), end="")
     else:
-        shown = [f"{len(result.plan.steps)} steps, {result.schedule.days:.1f} days for {read.crew.people}"]
+        steps = len(result.plan.steps)
+        shown = [f"{steps} step{'s' * (steps != 1)}, {result.schedule.days:.1f} days for {read.crew.people}"]
         for order in result.locking[:1] if edges_first else ():
             price = f"{100.0 * order.rule_price:.0f} %"
             shown.append(f"Edge planks before geodesics cost {price} of the stiffness on the way")

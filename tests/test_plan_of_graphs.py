@@ -42,6 +42,9 @@ def test_a_weave_in_graphml_is_planned_as_the_same_in_json(name: str, tmp_path: 
     assert run.stdout == same.stdout
     assert check_graph_plan(read_plan(run.stdout).plan, graph, 4) == []
     assert (tmp_path / "out" / "plan.json").read_text(encoding="utf-8") == run.stdout
+    files = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*.*")}
+    printed = {"sequence.html", "sequence.pdf", "schedule.svg"}
+    assert files == {"plan.json", "tables/schedule.csv", "graph.json", "graph.graphml"} | printed
 
 
 def test_a_directed_graph_of_networkx_is_explained_from_the_command_line(tmp_path: Path) -> None:

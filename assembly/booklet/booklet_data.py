@@ -11,7 +11,7 @@ from assembly.base.steps import Plan, Step
 from assembly.booklet.gantt import gantt_svg
 from assembly.booklet.step_words import step_title
 from assembly.booklet.words import booklet_words, finding_lines
-from assembly.plan.schedule import Schedule
+from assembly.plan.schedule import Schedule, people_curve
 
 Kind: TypeAlias = Literal["sequence", "disassembly"]
 # A step by its number and title, with the marks of what it handles.
@@ -94,8 +94,8 @@ def booklet_data(
 
     ``cover`` is the name of the cover's picture, ``rest`` that of the chapter of steps that belong to no shell.
     """
-    people = max((step.crew for step in plan.steps), default=0)
-    told = words["cover"]["crew"].format(steps=len(plan.steps), people=people, days=ceil(schedule.days))
+    people, days = max((count for _, count in people_curve(schedule)), default=0), ceil(schedule.days)
+    told = words["cover"]["crew" if days > 1 else "crew_day"].format(steps=len(plan.steps), people=people, days=days)
     data = {
         "kind": kind,
         "language": language,

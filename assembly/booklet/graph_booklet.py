@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
+from itertools import chain
 from typing import Any
 
 import networkx as nx
@@ -17,17 +18,10 @@ from assembly.booklet.cards import Known, card_table, length_words, mass_words, 
 from assembly.booklet.qr import qr_svg
 from assembly.booklet.step_words import step_title
 from assembly.graph.interlacing import interlacing
-from assembly.graph.laying_units import is_laid, units_of
+from assembly.graph.laying_units import units_of
 from assembly.graph.whole import whole_graph
-from assembly.pictures.weave_pictures import (
-    Floor,
-    cover_svg,
-    floor_of,
-    floor_svg,
-    joints_of_step,
-    map_svg,
-    units_of_step,
-)
+from assembly.pictures.floor import Floor, floor_of, joints_of_step, units_of_step
+from assembly.pictures.weave_pictures import cover_svg, floor_svg, key_svg, map_svg
 from assembly.plan.graph_plan import unit_kits, unit_weights
 from assembly.plan.schedule import Schedule
 
@@ -37,7 +31,10 @@ _MOST_ROWS, _MOST_NAMES = 14, 150
 
 def _known(graph: "nx.MultiGraph[str]", floor: Floor, language: Language) -> Known:
     """Return what cards know of the parts: a fastener is found at the first of its joints."""
-    names = {mark: printed(node_text(node), language) for mark, node in graph.nodes(data=True)}
+    names = {}
+    for mark, node in graph.nodes(data=True):
+        long = "" if mark in floor.planks else f" {length_words(node['length_mm'])}"
+        names[mark] = printed(node_text(node), language) + long
     joints = {
         mark: floor.joints[mark][0] for mark in graph if is_fastener(graph.nodes[mark]["kind"]) and floor.joints[mark]
     }
@@ -59,34 +56,33 @@ def _table(floor: Floor, step: Step, known: Known) -> dict[str, Any] | None:
 
 def _totals(graph: "nx.MultiGraph[str]", floor: Floor, known: Known) -> dict[str, Any]:
     """Return the parts of a graph by section and length with counts and masses, and the whole in short."""
-
-    def word(key: str, **figures: int) -> str:
-        return say(language, f"cards.whole.{key}", **figures)
-
-    language, nodes = known.language, graph.nodes
-    groups: dict[str, dict[int, list[float]]] = defaultdict(lambda: defaultdict(list))
-    for mark in sorted(graph, key=lambda mark: (not is_laid(nodes[mark]), known.names[mark], mark)):
-        groups[known.names[mark]][round(nodes[mark]["length_mm"])].append(nodes[mark]["mass_kg"])
+    language, nodes, laid = known.language, graph.nodes, floor.planks.keys()
+    groups: dict[str, dict[int, list[str]]] = defaultdict(lambda: defaultdict(list))
+    for mark in sorted(graph, key=lambda mark: (mark not in laid, known.names[mark], nodes[mark]["length_mm"])):
+        groups[printed(node_text(nodes[mark]), language)][round(nodes[mark]["length_mm"])].append(mark)
     brief = sum(map(len, groups.values())) > _MOST_ROWS
-    rows = []
-    for name, lengths in groups.items():
-        for alike in [sorted(lengths)] if brief else [[length] for length in sorted(lengths)]:
-            masses = [mass for length in alike for mass in lengths[length]]
-            told = " … ".join(dict.fromkeys((f"{alike[0]}", f"{alike[-1]}")))
-            rows.append([name, f"{told} mm", str(len(masses)), mass_words(sum(masses), language)])
-    laid = [node for _, node in nodes(data=True) if is_laid(node)]
-    metres = sum(node["length_mm"] for node in laid) / MM_PER_M
-    heaviest = max(known.weights, key=lambda mark: (known.weights[mark][0], mark))
-    whole = mass_words(sum(node["mass_kg"] for _, node in nodes(data=True)), language)
-    rows.append([word("all"), "", str(len(graph)), whole])
-    facts = [
-        [word("laid"), str(len(laid))],
-        [word("metres"), figure(f"{metres:.1f} m", language)],
-        [word("crossings"), str(sum(edge["kind"] == "crossing" for _, _, edge in graph.edges(data=True)))],
-        [word("slid"), str(len(floor.slides))],
-        [word("heaviest"), f"{heaviest}, {mass_words(known.weights[heaviest][0], language)}"],
+    listed = [
+        (name, alike)
+        for name, lengths in groups.items()
+        for alike in ([[*chain.from_iterable(lengths.values())]] if brief else lengths.values())
     ]
-    return card_table(language, "whole", rows) | {"facts": facts}
+    rows = []
+    for name, marks in listed:
+        first, last = (f"{nodes[mark]['length_mm']:.0f}" for mark in (marks[0], marks[-1]))
+        mass = mass_words(sum(nodes[mark]["mass_kg"] for mark in marks), language)
+        rows.append([name, f"{first} mm" if first == last else f"{first} … {last} mm", str(len(marks)), mass])
+    mass = mass_words(sum(node["mass_kg"] for node in nodes.values()), language)
+    rows.append([say(language, "cards.whole.all"), "", str(len(graph)), mass])
+    heaviest = max(known.weights, key=lambda mark: (known.weights[mark][0], mark))
+    facts = {
+        "laid": str(len(laid)),
+        "metres": figure(f"{sum(nodes[mark]['length_mm'] for mark in laid) / MM_PER_M:.1f} m", language),
+        "crossings": str(sum(edge["kind"] == "crossing" for _, _, edge in graph.edges(data=True))),
+        "slid": str(len(floor.slides)),
+        "heaviest": f"{heaviest}: {mass_words(known.weights[heaviest][0], language)}",
+    }
+    told = [[say(language, f"cards.whole.{key}"), value] for key, value in facts.items()]
+    return card_table(language, "whole", rows) | {"facts": told}
 
 
 def _cards(
@@ -99,12 +95,14 @@ def _cards(
         listed = [mark for mark in step.marks if mark not in own]
         card = step_card(plan, step, known, _table(floor, step, known), listed)
         pictures |= {name: floor_svg(floor, step, there), f"qr-{step.number}": qr_svg(card["qr"])}
+        if key := key_svg(floor, step):
+            pictures[f"key-{step.number}"] = key
         there += own
         yield card | card_lines("sequence", words, step, card) | {
             "pictures": [name],
             "caption": words["captions"][f"graph {step.phase}"],
             "qr": f"qr-{step.number}",
-            "key": "",
+            "key": f"key-{step.number}" if key else "",
         }  # fmt: skip
 
 

@@ -6,7 +6,8 @@ also ``start`` and ``end``. A crossing needs ``above`` or nodes in different lay
 ``joint_kind`` are then "", ``layer`` None, ``upright`` False, ``slides`` whatever ``upright`` is not, ``position`` the
 middle between the ends, ``joint`` the key of the edge or its two marks, the stations of a crossing those where its
 straight lines come nearest. Where ``depth_mm`` or ``min_radius_mm`` is left out, no bend can be checked, and the plank
-is slid in only where it stays straight. Attributes of other names are kept and not looked at.
+is slid in only where it stays straight; without ``width_mm`` it is drawn as a line, and only with both of these it has
+a section in the booklet. Attributes of other names are kept and not looked at.
 """
 
 import math

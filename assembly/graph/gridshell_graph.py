@@ -30,9 +30,11 @@ class PartNode(TypedDict):
 
     ``kind`` is the word of the part lists (``aag_cad.parts.kinds.Kind.name``), ``beam`` the mark of the coupled beam
     that the part is put together with, or "". What is laid on the floor, a plank, has in addition: ``start`` and
-    ``end`` of its centre line (vault coordinates, mm); whether it stands ``upright`` on the surface; ``depth_mm``, its
-    size along the surface normal; ``min_radius_mm``, to which it can be bent flat-ways; and, only in graphs from
-    elsewhere, ``slides``: whether it may be slid in, which else all do that do not stand upright.
+    ``end`` of its centre line (vault coordinates, mm); whether it stands ``upright`` on the surface; its section, from
+    which the booklet calls and draws it: ``width_mm`` across it in the surface, as it is seen from above, and
+    ``depth_mm`` along the surface normal, the thickness of a flat plank; ``min_radius_mm``, to which it can be bent
+    flat-ways; and, only in graphs from elsewhere, ``slides``: whether it may be slid in, which else all do that do not
+    stand upright.
     """
 
     kind: str
@@ -46,6 +48,7 @@ class PartNode(TypedDict):
     start: NotRequired[Vector]
     end: NotRequired[Vector]
     upright: NotRequired[bool]
+    width_mm: NotRequired[float]
     depth_mm: NotRequired[float]
     min_radius_mm: NotRequired[float]
     slides: NotRequired[bool]
@@ -144,9 +147,15 @@ def _add_planks(graph: "nx.MultiGraph[str]", shell: Shell, min_radius: float) ->
     ends = _placed(np.array([plank.curve.points[-1] for plank in shell.planks]).reshape(-1, 3), shell.placement)
     for plank, start, end in zip(shell.planks, starts, ends, strict=True):
         section = plank.blank.section
-        depth = section.width if plank.upright else section.thickness
+        depth, width = (section.width, section.thickness)[:: 1 if plank.upright else -1]
         graph.add_node(
-            plank.mark, start=start, end=end, upright=plank.upright, depth_mm=depth, min_radius_mm=min_radius
+            plank.mark,
+            start=start,
+            end=end,
+            upright=plank.upright,
+            width_mm=width,
+            depth_mm=depth,
+            min_radius_mm=min_radius,
         )
     for a, b, edge in _crossings(shell):
         graph.add_edge(a, b, key=edge["joint"], **edge)

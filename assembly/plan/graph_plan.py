@@ -1,8 +1,9 @@
 """The plan of laying and joining any graph of parts and joints on the floor (``assembly.graph.faults``)."""
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from unicodedata import name
 
 import networkx as nx
 
@@ -23,6 +24,8 @@ from assembly.plan.work import LAID_A_STEP, PAIR, Work, steps_from
 
 JOINTS_A_STEP = 24
 _FEW = 4
+# The scripts of the letters that the fonts of the booklets have.
+_PRINTED = ("LATIN", "GREEK", "CYRILLIC", "MICRO", "FEMININE", "MASCULINE")
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,12 @@ def unit_weights(
     return parts | made
 
 
+def _steps_of(marks: Iterable[str], steps: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the steps of those of some marks that have one, in their order; ``steps`` gives them in that order."""
+    found = {steps[mark] for mark in marks if mark in steps}
+    return tuple(step for step in dict.fromkeys(steps.values()) if step in found)
+
+
 def _laying(basis: _Basis, steps: dict[str, str]) -> Iterator[Work]:
     """Yield the laying of runs in groups; ``steps`` learns the step of each unit."""
     counts: dict[str, int] = defaultdict(int)
@@ -73,20 +82,20 @@ def _laying(basis: _Basis, steps: dict[str, str]) -> Iterator[Work]:
         below = sorted({low for unit in group for low in basis.woven.precedence.predecessors(unit)})
         beneath = sorted({basis.units[unit].family for unit in below})
         stack = "-".join(part for part in (first.shell, first.family) if part)
+        order = tuple(short_in(mark, first.shell) for mark in group)
+        beams = tuple(unit for unit in group if unit not in basis.graph)
         onto = named_marks(below) if "" in beneath else ", ".join(beneath)
         marks = tuple(mark for unit in group for mark in basis.kits[unit])
         title = _says("lay.title", marks=named_marks(group))
         work = basis.work(f"lay.{counts[first.shell]}", "lay", first.shell, title, marks)
+        notes = [
+            _says("lay.stack", stack=stack, marks=order) if stack else _says("lay.carry", marks=order),
+            _says("lay.over", below=onto) if below else _says("lay.floor"),
+        ]
+        if beams:
+            notes.insert(0, _says("lay.make", marks=tuple(short_in(mark, first.shell) for mark in beams)))
+        yield replace(work, assemblies=beams, after=_steps_of(below, steps), notes=tuple(notes))
         steps |= dict.fromkeys(group, work.id)
-        yield replace(
-            work,
-            assemblies=tuple(unit for unit in group if unit not in basis.graph),
-            after=tuple(dict.fromkeys(steps[unit] for unit in below if unit in steps)),
-            notes=(
-                _says("lay.stack", stack=stack, marks=tuple(short_in(mark, first.shell) for mark in group)),
-                _says("lay.over", below=onto) if below else _says("lay.floor"),
-            ),
-        )
 
 
 def _sliding(basis: _Basis, steps: dict[str, str]) -> Iterator[Work]:
@@ -97,13 +106,10 @@ def _sliding(basis: _Basis, steps: dict[str, str]) -> Iterator[Work]:
         counts[unit.shell] += 1
         name, marks = f"slide.{counts[unit.shell]}", basis.kits[unit.mark]
         work = told_slide(basis.work(name, "slide", unit.shell, slide_title(slide), marks), slide, unit.length)
-        before = sorted(basis.woven.precedence.predecessors(unit.mark))
+        beams = (unit.mark,) if unit.mark not in basis.graph else ()
+        after = _steps_of(basis.woven.precedence.predecessors(unit.mark), steps)
+        yield replace(work, assemblies=beams, after=after)
         steps[unit.mark] = work.id
-        yield replace(
-            work,
-            assemblies=(unit.mark,) if unit.mark not in basis.graph else (),
-            after=tuple(dict.fromkeys(steps[other] for other in before if other in steps)),
-        )
 
 
 def _joined(names: tuple[str, ...]) -> Figure:
@@ -132,16 +138,20 @@ def _joining(basis: _Basis, found: Sequence[Joining], steps: dict[str, str]) -> 
             order = tuple(short_in(joining.joint, shell) for joining in group)
             title = _says("join.title", joints=_joined(order))
             work = basis.work(f"join.{counts[shell]}", "join", shell, title, marks)
-            tied = sorted({other for mark in marks for other in basis.graph[mark]} - set(marks))
-            units = dict.fromkeys(home[other] for other in tied if other in home)
-            waits = [*units, *(unit for other in units for unit in past[other]), *(o for o in tied if o not in home)]
+            tied = {other for mark in marks for other in basis.graph[mark]} - set(marks)
+            units = {home[other] for other in tied if other in home}
+            waits = {*units, *(unit for other in units for unit in past[other]), *(tied - home.keys())}
+            notes = (_says("join.order", joints=order),)
+            yield replace(work, least_crew=PAIR, after=_steps_of(waits, steps), notes=notes)
             steps |= dict.fromkeys(marks, work.id)
-            yield replace(
-                work,
-                least_crew=PAIR,
-                after=tuple(sorted({steps[other] for other in waits if other in steps} - {work.id})),
-                notes=(_says("join.order", joints=order),),
-            )
+
+
+def _unprinted(marks: Iterable[str]) -> Iterator[Finding]:
+    """Yield the note on marks with letters of scripts that the fonts of the PDF do not have (AAG957)."""
+    strange = [mark for mark in marks if any(c.isalpha() and not name(c, "").startswith(_PRINTED) for c in mark)]
+    if strange:
+        what, remedy = _says("letters.what"), _says("letters.remedy")
+        yield Finding("AAG957", "note", ", ".join(strange), what, float(len(strange)), 0.0, "", remedy)
 
 
 def _waiting(marks: Sequence[str]) -> tuple[Finding, ...]:
@@ -156,8 +166,8 @@ def graph_plan(graph: "nx.Graph[str]", people: int, lift_limit: float) -> Plan:
 
     For a crew of ``people`` who lift at most ``lift_limit`` kg each. Runs are laid in groups of at most 7, each slide
     is a step of its own, and at most 24 joints are joined in a step. ``findings`` name what cannot be laid (AAG951) or
-    put in (AAG956), which is in no step, and what is heavy (AAG955). PlanError if the graph is empty or has faults, a
-    part is tied to nothing, or the crew is empty.
+    put in (AAG956), which is in no step, what is heavy (AAG955), and marks that the PDF cannot print (AAG957).
+    PlanError if the graph is empty or has faults, a part is tied to nothing, or the crew is empty.
     """
     lifters, whole = lifters_of(people, lift_limit), whole_graph(graph)
     if not whole:
@@ -171,5 +181,5 @@ def graph_plan(graph: "nx.Graph[str]", people: int, lift_limit: float) -> Plan:
     works = [*_laying(basis, step_of), *_sliding(basis, step_of), *_joining(basis, found, step_of)]
     alone = (mark for mark in weights if placed.get(mark, mark) == mark and mark not in woven.left_out)
     lifted = {mark: weights[mark] for mark in alone}
-    findings = (*woven.findings, *_waiting(waiting), *lifting_findings(lifted, lifters))
+    findings = (*woven.findings, *_waiting(waiting), *lifting_findings(lifted, lifters), *_unprinted(whole))
     return Plan(str(whole.name), tuple(steps_from(works, weights, lifters)), findings)

@@ -10,6 +10,7 @@ import numpy as np
 from aag_cad.units import MM3_PER_M3, Floats, Vector, vector
 
 _WIDTH, _THICKNESS = 100.0, 12.0
+_FLAT = {"width_mm": _WIDTH, "depth_mm": _THICKNESS}
 _DENSITY = 700.0
 _MIN_RADIUS = 1700.0
 
@@ -72,7 +73,7 @@ def kagome_graph(count: int = 6, mesh: float = 500.0, overhang: float = 80.0) ->
             limits = np.concatenate([(side * reach - others @ foot) / (others @ along) for side in (-1.0, 1.0)])
             places = [foot + x * along for x in (max(limits[limits < 0.0]), min(limits[limits > 0.0]))]
             start, end = (vector(np.round([*place, 0.0], 3) + 0.0) for place in places)
-            _plank(graph, f"P{family + 1}-{i + 1:02d}", start, end, family=f"P{family + 1}", depth_mm=_THICKNESS)
+            _plank(graph, f"P{family + 1}-{i + 1:02d}", start, end, family=f"P{family + 1}", **_FLAT)
     marks = [[mark for mark in graph if mark.startswith(f"P{k}")] for k in (1, 2, 3)]
     for upper, lower in ((0, 1), (1, 2), (2, 0)):
         _cross(graph, [(a, b) for b in marks[upper] for a in marks[lower]])
@@ -85,10 +86,10 @@ def circle_graph() -> "nx.MultiGraph[str]":
     The circle cannot be laid and, being upright, not be threaded; all below it can.
     """
     graph: nx.MultiGraph[str] = nx.MultiGraph(name="four upright planks in a circle")
-    upright = {"upright": True, "depth_mm": _WIDTH}
+    upright = {"upright": True, "width_mm": _THICKNESS, "depth_mm": _WIDTH}
     for i, at in enumerate((-900.0, 0.0, 900.0), start=1):
         _plank(graph, f"L-{i}", (-2000.0, at, 0.0), (2000.0, at, 0.0), family="L", layer=-1, **upright)
-        _plank(graph, f"G-{i}", (at, -2000.0, 0.0), (at, 2000.0, 0.0), family="G", layer=0, depth_mm=_THICKNESS)
+        _plank(graph, f"G-{i}", (at, -2000.0, 0.0), (at, 2000.0, 0.0), family="G", layer=0, **_FLAT)
     corners = [(-600.0, -600.0), (600.0, -600.0), (600.0, 600.0), (-600.0, 600.0)]
     for i, (x, y) in enumerate(corners):
         dx, dy = (1.0, 0.0) if i % 2 == 0 else (0.0, 1.0)

@@ -196,5 +196,5 @@ def test_a_plain_graph_has_a_page_too(name: str, design: Design) -> None:
     slid = [step for step in plan.steps if step.phase == "slide"]
     assert all(step_title(step, "en") in page for step in slid)
     passed = [joint for slide in interlacing(graph, later=()).slides for joint in slide.joints]
-    assert len(re.findall(r'<circle [^>]*r="11"/>', page)) == len(passed)
+    assert len(re.findall(r'<circle [^>]*r="26"/>', page)) == len(passed)
     assert bool(passed) == bool(slid)
