@@ -6,7 +6,7 @@ class AagError(Exception):
 
 
 class DesignError(AagError, ValueError):
-    """A design file that cannot be built: the text starts with the key's path."""
+    """A design or an option that cannot be built: the text starts with the key's path or the option."""
 
 
 class SurfaceError(AagError, ValueError):
@@ -23,10 +23,6 @@ class MarkError(AagError, ValueError):
 
 class SolidError(AagError, ArithmeticError):
     """A solid that came out invalid; the text names the mark."""
-
-
-class LanguageError(AagError, ValueError):
-    """A language in which nothing is printed."""
 
 
 class FileError(AagError, OSError):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, Literal, TypeAlias, get_args
 
-from aag_cad.errors import LanguageError
+from aag_cad.errors import DesignError
 from aag_cad.resources import template
 
 Language: TypeAlias = Literal["en", "de"]
@@ -42,11 +42,11 @@ def text(key: str, **figures: Figure) -> Text:
 
 
 def language_of(code: str) -> Language:
-    """Return the language with a code; LanguageError with the codes that there are."""
+    """Return the language with a code; DesignError with the codes that there are."""
     for language in LANGUAGES:
         if code == language:
             return language
-    raise LanguageError(f"--lang: {code!r}; there are {', '.join(LANGUAGES)}")
+    raise DesignError(f"--lang: {code!r}; there are {', '.join(LANGUAGES)}")
 
 
 @cache

@@ -203,7 +203,7 @@ def build(
 
     Every file is written into a temporary folder first and moved when all are whole, so that an error leaves nothing
     behind. ``report`` is called with the name of each stage as it begins. FileError if the folder cannot be written,
-    PlanError if the sheets are not printed in ``language``.
+    DesignError if nothing is printed in ``language``.
     """
     # The libraries of the formats take a second to load.
     from aag_cad.outputs import EVERY_OUTPUT, Dossier, chosen_outputs

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from frame_modes import lowest_eigenvalues
 from Pynite import FEModel3D
 
 from aag_cad.mechanics.frame.factor import lowest_pairs, softest_pair
@@ -22,7 +23,7 @@ from aag_cad.mechanics.frame.model import (
     Support,
     rectangle_section,
 )
-from aag_cad.mechanics.frame.statics import FrameResult, held_part, lowest_modes, static_solution
+from aag_cad.mechanics.frame.statics import FrameResult, held_part, static_solution
 from aag_cad.mechanics.frame.system import against_unknowns, frame_system, full_stiffness, mass_matrix
 from aag_cad.units import Floats, Vector
 
@@ -249,7 +250,7 @@ def test_a_cantilever_swings_at_the_frequencies_of_euler_and_bernoulli() -> None
     model = chain([(length * i / count, 0.0, 0.0) for i in range(count + 1)])
     masses = np.full(count + 1, weight / count)
     masses[[0, -1]] /= 2
-    found = lowest_modes(model, 6, masses).eigenvalues
+    found = lowest_eigenvalues(model, 6, masses)
     for inertia in (BAR.inertia_y, BAR.inertia_z):
         unit = 1000.0 * ASH.modulus * inertia / (weight * length**3)
         for root in (1.875104, 4.694091):
@@ -270,13 +271,13 @@ def test_subspace_iteration_finds_the_softest_mode_from_a_guess_that_lacks_it() 
 
 def test_a_beam_in_the_air_has_six_modes_without_stiffness() -> None:
     base = chain([(300.0 * i, 10.0 * i * i, 0.0) for i in range(14)])
-    found = lowest_modes(replace(base, supports=()), 8).eigenvalues
+    found = lowest_eigenvalues(replace(base, supports=()), 8)
     assert np.all(np.abs(found[:6]) < 1e-6 * found[6])
 
 
 def test_a_pin_shows_as_one_eigenvalue_of_zero() -> None:
     """With masses at all nodes; scissors of one clamped and one free bar."""
-    found = lowest_modes(scissors(UP), 2, np.ones(5)).eigenvalues
+    found = lowest_eigenvalues(scissors(UP), 2, np.ones(5))
     assert abs(found[0]) < 1e-6 * found[1]
 
 

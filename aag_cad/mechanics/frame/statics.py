@@ -1,4 +1,4 @@
-"""Linear statics and soft modes of frames of 2-node beams with six degrees of freedom a node; mm, N, N/mm2.
+"""Linear statics of frames of 2-node beams with six degrees of freedom a node; mm, N, N/mm2.
 
 Euler-Bernoulli bending and St Venant torsion, small displacements; hinges, rigid arms, pins and springs: see
 ``aag_cad.mechanics.frame.model``. Checked against closed forms and PyNiteFEA in tests/mechanics/test_frame.py.
@@ -10,18 +10,15 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from aag_cad.mechanics.frame.elements import even_load_forces
-from aag_cad.mechanics.frame.factor import SingularError, factor, lowest_pairs
+from aag_cad.mechanics.frame.factor import SingularError, factor
 from aag_cad.mechanics.frame.model import FrameError, FrameModel, LineLoad, NodalLoad
 from aag_cad.mechanics.frame.system import (
     FrameSystem,
     against_unknowns,
     frame_system,
     full_stiffness,
-    mass_matrix,
 )
 from aag_cad.units import Floats
-
-_KG_PER_TONNE = 1000.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,17 +32,6 @@ class FrameResult:
     displacements: Floats
     reactions: Floats
     end_forces: Floats
-
-
-@dataclass(frozen=True, eq=False)
-class FrameModes:
-    """The lowest eigenvalues (k,) of K v = lambda M v and the displacements (n, 6, k) of their modes.
-
-    With masses in kg the eigenvalues are in 1/s2, squares of the circular frequencies; with M = 1 they are those of K.
-    """
-
-    eigenvalues: Floats
-    displacements: Floats
 
 
 def mechanism_error(system: FrameSystem, unknowns: Floats) -> FrameError:
@@ -136,23 +122,3 @@ def _reactions(system: FrameSystem, missing: Floats) -> Floats:
             first = system.transform.indices[system.transform.indptr[6 * place]]
             reactions[place] = at_unknowns[first : first + 6]
     return reactions
-
-
-def lowest_modes(model: FrameModel, count: int, masses: Floats | None = None) -> FrameModes:
-    """Return the lowest eigenvalues of a frame, at most ``count``, and their modes.
-
-    ``masses`` (n,) in kg are lumped at the nodes; without them M is the unit matrix of the unknowns. Mechanisms show as
-    eigenvalues of about 0; FrameError for one in which no mass moves.
-    """
-    system = frame_system(model)
-    stiffness = held_part(system, against_unknowns(system, full_stiffness(system)))
-    size = len(system.free)
-    if masses is None:
-        mass = csc_array((np.ones(size), (np.arange(size), np.arange(size))), shape=(size, size))
-    else:
-        mass = held_part(system, mass_matrix(system, masses / _KG_PER_TONNE))
-    try:
-        values, modes = lowest_pairs(stiffness, mass, min(count, size))
-    except SingularError as error:
-        raise mechanism_error(system, _spread(system, error.mode)) from error
-    return FrameModes(values, (system.transform @ _spread(system, modes)).reshape(len(system.points), 6, -1))
