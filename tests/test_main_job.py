@@ -1,6 +1,7 @@
 """The main job: one design file in, a folder out, twice, and what its summary says."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -28,7 +29,8 @@ FILES = {
 
 def _build(folder: Path, seed: str) -> Path:
     command = [sys.executable, "-m", "aag_cad", "build", "vault", "-o", str(folder)]
-    environment = {"PYTHONHASHSEED": seed, "PATH": "/usr/bin:/bin", "HOME": str(folder.parent)}
+    # The rest stays as it is here: last digits depend on the kernels that the BLAS takes by its environment.
+    environment = os.environ | {"PYTHONHASHSEED": seed, "HOME": str(folder.parent)}
     subprocess.run(command, check=True, capture_output=True, env=environment)
     return folder
 
@@ -83,7 +85,7 @@ def test_calendar_and_ifc_tell_the_same_times(built: Path) -> None:
         get_pset(task, "AAG_Step", "StepNumber"): (task.TaskTime.ScheduleStart, task.TaskTime.ScheduleFinish)
         for task in file.by_type("IfcTask")
     }
-    assert told[1][0] == "2027-03-01T07:00:00"
+    assert min(begin for begin, _ in told.values()) == "2027-03-01T07:00:00"
 
 
 def test_gridshell_json_is_the_model_itself(built: Path, gridshell: Gridshell) -> None:
