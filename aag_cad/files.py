@@ -2,13 +2,15 @@
 
 import csv
 import io
+import json
 import os
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
-from aag_cad.errors import FileError
+from aag_cad.errors import AagError, FileError
 
 
 @contextmanager
@@ -72,6 +74,15 @@ def read_text(path: str | os.PathLike[str]) -> str:
         return Path(path).read_text(encoding="utf-8-sig")
     except (OSError, ValueError) as error:
         raise FileError(f"{path}: cannot be read as a text file: {error}") from error
+
+
+def json_object(text: str, source: str, kind: type[AagError] = FileError) -> dict[str, Any]:
+    """Return the object in a JSON text, an empty one for all else; ``kind`` of error with the source if it is none."""
+    try:
+        data = json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise kind(f"{source}: not valid JSON: {error}") from error
+    return data if isinstance(data, dict) else {}
 
 
 def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:

@@ -1,9 +1,7 @@
 """Planning alone: a design, a gridshell.json or any graph of parts -> plan -> files; or why a part comes then."""
 
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import networkx as nx
 
@@ -17,7 +15,7 @@ from aag_cad.export.office.plan_files import (
     gridshell_dossier,
     write_plan_output,
 )
-from aag_cad.files import publishing, read_text, sizes_below
+from aag_cad.files import json_object, publishing, read_text, sizes_below
 from aag_cad.findings import Finding
 from aag_cad.language import Language, printed
 from aag_cad.parts.model import Gridshell
@@ -51,14 +49,6 @@ class Source:
     whole: "Gridshell | nx.Graph[str]"
 
 
-def _keys(text: str, path: str) -> set[str]:
-    try:
-        data: Any = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise FileError(f"{path}: not valid JSON: {error}") from error
-    return set(data) if isinstance(data, dict) else set()
-
-
 def read_source(source: str, people: int | None = None, limits: Limits | None = None) -> Source:
     """Return what a design (file or shipped name), a gridshell.json, or a graph (file or shipped name) asks to plan.
 
@@ -68,7 +58,7 @@ def read_source(source: str, people: int | None = None, limits: Limits | None = 
     ending, crew = Path(source).suffix.lower(), _crew_with(FOUR, people)
     if source in shipped_graphs() or ending in (".json", *_GRAPHML):
         text = graph_text(source) if source in shipped_graphs() else read_text(source)
-        keys = {"graphml"} if ending in _GRAPHML else _keys(text, source)
+        keys = {"graphml"} if ending in _GRAPHML else set(json_object(text, source))
         if "shells" in keys:
             gridshell = read_gridshell(text)
             return Source(gridshell.name, crew, limits or NO_LIMITS, gridshell)

@@ -17,6 +17,7 @@ from scipy.interpolate import make_interp_spline
 
 from aag_cad.errors import FileError, NetworkError
 from aag_cad.families import BEAMS, EDGES, FAMILIES, Family
+from aag_cad.files import json_object
 from aag_cad.geometry.framed import FramedCurve, framed_curve, frames_at
 from aag_cad.geometry.surface import dot, unit
 from aag_cad.network.model import Crossing, CrossingKind, CurveId, CurveNetwork, NetworkCurve
@@ -76,11 +77,8 @@ def _name(curve: CurveId) -> str:
 
 
 def _families(text: str, source: str) -> dict[Family, list[Any]]:
-    try:
-        data = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise FileError(f"{source}: not valid JSON: {error}") from error
-    if not isinstance(data, dict) or not isinstance(data.get("families"), dict):
+    data = json_object(text, source)
+    if not isinstance(data.get("families"), dict):
         raise FileError(f'{source}: expected an object with "schema", "unit" and "families"')
     if data.get("schema") != SCHEMA_VERSION:
         raise FileError(f"{source}: schema {data.get('schema')!r}, this program reads {SCHEMA_VERSION}")

@@ -9,6 +9,7 @@ from typing import Any, Literal, get_args, get_origin, get_type_hints
 import numpy as np
 
 from aag_cad.errors import FileError
+from aag_cad.files import json_object
 from aag_cad.geometry.framed import FramedCurve
 from aag_cad.parts.kinds import KINDS, kind_of
 from aag_cad.parts.marks import turned_mark
@@ -127,11 +128,8 @@ def _refuse_false_twins(shells: tuple[Shell, ...]) -> None:
 
 def read_gridshell(text: str) -> Gridshell:
     """Return the gridshell in a JSON text; FileError with the path in the file where it does not fit."""
-    try:
-        data = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise FileError(f"gridshell.json: not valid JSON: {error}") from error
-    version = data.get("schema_version") if isinstance(data, dict) else None
+    data = json_object(text, "gridshell.json")
+    version = data.get("schema_version")
     if version != SCHEMA_VERSION:
         raise FileError(
             f"gridshell.json: schema_version {version!r}, this program reads {SCHEMA_VERSION}; build the design again"

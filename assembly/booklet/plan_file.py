@@ -1,6 +1,5 @@
 """plan.json: a plan as one file that tells the whole story in all languages; its schema is documented and versioned."""
 
-import json
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ import networkx as nx
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
 from aag_cad.design_making import Crew
+from aag_cad.files import json_object
 from aag_cad.findings import Severity
 from aag_cad.language import LANGUAGES, Language, Sentence, printed
 from aag_cad.parts.model import Gridshell, all_parts
@@ -235,12 +235,7 @@ def plan_json(file: PlanFile) -> str:
 
 def read_plan(text: str) -> PlanFile:
     """Return the plan file in a JSON text; PlanError with the place of the first fault."""
-    try:
-        version = json.loads(text).get("schema_version")
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise PlanError(f"assembly plan: not valid JSON: {error}") from error
-    except AttributeError as error:
-        raise PlanError("assembly plan: expected an object with the key schema_version") from error
+    version = json_object(text, "assembly plan", PlanError).get("schema_version")
     if version != PLAN_VERSION:
         raise PlanError(
             f"assembly plan: schema_version {version!r}, allowed {PLAN_VERSION}; write it again with this version"

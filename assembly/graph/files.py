@@ -7,6 +7,7 @@ from xml.etree.ElementTree import ParseError
 
 import networkx as nx
 
+from aag_cad.files import json_object
 from aag_cad.resources import shipped_names, shipped_text
 from assembly.base.any_graph import add_joint, as_multigraph
 from assembly.base.errors import PlanError
@@ -106,11 +107,8 @@ def _items(data: Attributes, name: str, marks: tuple[str, ...]) -> list[Attribut
 
 def read_graph(text: str) -> "nx.MultiGraph[str]":
     """Return the graph in a JSON text, its defaults filled in; PlanError that lists the first faults of all."""
-    try:
-        data = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise PlanError(f"graph: not valid JSON: {error}") from error
-    version = data.get("schema_version") if isinstance(data, dict) else None
+    data = json_object(text, "graph", PlanError)
+    version = data.get("schema_version")
     if version != SCHEMA_VERSION:
         raise PlanError(
             f"graph: schema_version {version!r}, this program reads {SCHEMA_VERSION}; see docs/interlacing.md"

@@ -347,7 +347,7 @@ def test_a_damaged_file_is_refused_with_the_place_and_by_the_schema(
     assert not validator.is_valid(data)
 
 
-@pytest.mark.parametrize(("told", "place"), [("{", "not valid JSON"), ("[]", "expected an object.*schema_version")])
+@pytest.mark.parametrize(("told", "place"), [("{", "not valid JSON"), ("[]", "schema_version None, allowed")])
 def test_what_is_no_object_of_json_is_refused(told: str, place: str) -> None:
     with pytest.raises(PlanError, match=place):
         read_plan(told)
