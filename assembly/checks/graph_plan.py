@@ -9,7 +9,7 @@ import networkx as nx
 from aag_cad.parts.kinds import is_fastener
 from assembly.base.any_graph import as_multigraph
 from assembly.base.steps import Plan
-from assembly.checks.walking import ancestors, numbering_problems
+from assembly.checks.walking import ancestors, numbering_problems, once_problems
 
 
 def _nodes(graph: "nx.MultiGraph[str]") -> Mapping[str, Mapping[str, Any]]:
@@ -19,22 +19,6 @@ def _nodes(graph: "nx.MultiGraph[str]") -> Mapping[str, Mapping[str, Any]]:
 
 def _flat(node: Mapping[str, Any]) -> bool:
     return node["kind"] == "plank" or "start" in node
-
-
-def _once(plan: Plan, graph: "nx.MultiGraph[str]") -> Iterator[str]:
-    """Yield the parts that are in no step though no finding names them, in several steps, or not in the graph."""
-    seen: dict[str, str] = {}
-    for step in plan.steps:
-        for mark in step.marks:
-            if mark not in graph:
-                yield f"{mark}: step {step.id} adds it, but the graph has no such part"
-            elif mark in seen:
-                yield f"{mark}: added by step {seen[mark]} and again by step {step.id}"
-            seen[mark] = step.id
-    named = "".join(f", {finding.mark}, " for finding in plan.findings if finding.severity == "error")
-    for mark in sorted(set(graph) - set(seen)):
-        if not any(f", {name}, " in named for name in (mark, _nodes(graph)[mark].get("beam") or mark)):
-            yield f"{mark}: in no step, and no finding says why"
 
 
 def _buried(plan: Plan, graph: "nx.MultiGraph[str]", before: dict[str, set[str]]) -> Iterator[str]:
@@ -94,7 +78,11 @@ def check_graph_plan(plan: Plan, graph: "nx.Graph[str]", people: int | None = No
     before the planks that it is tied to; the planks on the way of a slide loose; crews of 1 to ``people``.
     """
     several = as_multigraph(graph)
-    faults = [*numbering_problems(plan), *_once(plan, several)]
+    named = "".join(f", {finding.mark}, " for finding in plan.findings if finding.severity == "error")
+    told = (
+        mark for mark, node in several.nodes(data=True) if any(f", {n}, " in named for n in (mark, node.get("beam")))
+    )
+    faults = [*numbering_problems(plan), *once_problems(plan, several.nodes, tuple(told))]
     if faults:
         return faults
     before = ancestors(plan)

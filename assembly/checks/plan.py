@@ -12,19 +12,11 @@ from assembly.base.locking_order import LockingOrder
 from assembly.base.segments import Segmentation
 from assembly.base.steps import Plan, Step
 from assembly.checks.stability import locking_problems, prop_problems, travel_problems
-from assembly.checks.walking import ancestors, numbering_problems
+from assembly.checks.walking import ancestors, numbering_problems, once_problems
 
 
 def _once(plan: Plan, gridshell: Gridshell) -> Iterator[str]:
-    wanted = index_of(gridshell).parts.keys()
-    placed = Counter(mark for step in plan.steps for mark in step.marks)
-    for mark in sorted(wanted - set(placed)):
-        yield f"{mark}: no step adds it"
-    for mark in sorted(set(placed) - wanted):
-        yield f"{mark}: a step adds it, but the gridshell has no such part"
-    for mark, count in sorted(placed.items()):
-        if count > 1:
-            yield f"{mark}: {count} steps add it, allowed 1"
+    yield from once_problems(plan, index_of(gridshell).parts)
     beams = index_of(gridshell).beams.keys()
     moved = Counter(mark for step in plan.steps for mark in step.assemblies if mark in beams)
     for mark in sorted(beams):

@@ -1,6 +1,7 @@
 """What all walks over a plan ask: whether its steps are numbered in order, what is forced before what, what stands."""
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator
 
 import numpy as np
 
@@ -20,6 +21,19 @@ def numbering_problems(plan: Plan) -> Iterator[str]:
             if before not in seen:
                 yield f"step {step.id}: predecessor {before} does not come before it"
         seen.add(step.id)
+
+
+def once_problems(plan: Plan, parts: Iterable[str], excused: Collection[str] = ()) -> Iterator[str]:
+    """Yield the parts that no step adds, unless they are excused, or several; and what is added, but is no part."""
+    placed = Counter(mark for step in plan.steps for mark in step.marks)
+    wanted = set(parts)
+    for mark in sorted(wanted - set(placed) - set(excused)):
+        yield f"{mark}: no step adds it"
+    for mark in sorted(set(placed) - wanted):
+        yield f"{mark}: a step adds it, but there is no such part"
+    for mark, count in sorted(placed.items()):
+        if count > 1:
+            yield f"{mark}: {count} steps add it, allowed 1"
 
 
 def ancestors(plan: Plan) -> dict[str, set[str]]:

@@ -43,7 +43,6 @@ class GraphProblem:
         return f"{self.where}: {self.attribute} {self.value}, allowed: {self.allowed}; {self.remedy}"
 
 
-_Edge: TypeAlias = tuple[str, str, object, dict[str, Any]]
 _Rule: TypeAlias = tuple[Callable[[Any], bool], str]
 
 
@@ -139,23 +138,18 @@ def _edge(graph: "nx.MultiGraph[str]", a: str, b: str, values: Mapping[str, Any]
         yield from _crossing(graph, (a, b), where, values)
 
 
-def _problems(graph: "nx.MultiGraph[str]", edges: list[_Edge], laid_only: bool) -> tuple[GraphProblem, ...]:
-    crossing = {end for a, b, _, values in edges if values.get("kind") == "crossing" for end in (a, b)}
-    found: list[tuple[tuple[str, ...], GraphProblem]] = []
-    for mark, values in graph.nodes(data=True):
-        laid = mark in crossing or is_laid(values)
-        if laid or not laid_only:
-            found += [(("node", str(mark)), problem) for problem in _node(mark, values, laid)]
-    for a, b, key, values in edges:
-        order = ("with", *sorted((str(a), str(b))), str(key))
-        found += [(order, problem) for problem in _edge(graph, a, b, values)]
-    return tuple(problem for _, problem in sorted(found, key=lambda pair: pair[0]))
-
-
 def graph_problems(graph: "nx.Graph[str]") -> tuple[GraphProblem, ...]:
     """Return every fault of any networkx graph by its nodes, then its edges, each in the order of their marks."""
     several = as_multigraph(graph)
-    return _problems(several, list(several.edges(keys=True, data=True)), laid_only=False)
+    edges = list(several.edges(keys=True, data=True))
+    crossing = {end for a, b, _, values in edges if values.get("kind") == "crossing" for end in (a, b)}
+    found: list[tuple[tuple[str, ...], GraphProblem]] = []
+    for mark, values in several.nodes(data=True):
+        found += [(("node", str(mark)), p) for p in _node(mark, values, mark in crossing or is_laid(values))]
+    for a, b, key, values in edges:
+        order = ("with", *sorted((str(a), str(b))), str(key))
+        found += [(order, problem) for problem in _edge(several, a, b, values)]
+    return tuple(problem for _, problem in sorted(found, key=lambda pair: pair[0]))
 
 
 def refuse(problems: tuple[GraphProblem, ...]) -> None:
@@ -164,13 +158,3 @@ def refuse(problems: tuple[GraphProblem, ...]) -> None:
         rest = len(problems) - _SHOWN
         shown = [problem.text for problem in problems[:_SHOWN]] + ([f"and {rest} more"] if rest > 0 else [])
         raise PlanError(f"{len(problems)} fault{'s' * (len(problems) > 1)} in the graph:\n" + "\n".join(shown))
-
-
-def refuse_unlayable(graph: "nx.MultiGraph[str]") -> None:
-    """Raise PlanError with the faults of what is laid and of its crossings, and of edges of unknown kinds."""
-    edges = [
-        edge
-        for edge in graph.edges(keys=True, data=True)
-        if edge[3].get("kind") == "crossing" or edge[3].get("kind") not in EDGE_KINDS
-    ]
-    refuse(_problems(graph, edges, laid_only=True))

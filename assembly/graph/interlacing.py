@@ -13,7 +13,7 @@ from aag_cad.language import Text, text
 from assembly.base.any_graph import as_multigraph
 from assembly.base.errors import PlanError
 from assembly.graph.circles import circle_links, few_out, knots, part_of, relations
-from assembly.graph.faults import refuse_unlayable
+from assembly.graph.faults import graph_problems, refuse
 from assembly.graph.laying_units import Overlap, overlaps_of, units_of
 from assembly.graph.sliding import End, Hindrance, Sliding, Why, slidings
 
@@ -119,7 +119,7 @@ def interlacing(graph: "nx.Graph[str]", later: Collection[str] | None = None) ->
     AAG951 in ``findings``.
     """
     several = as_multigraph(graph)
-    refuse_unlayable(several)
+    refuse(graph_problems(several))
     units = units_of(several)
     absent = {mark for mark, unit in units.items() if unit.family in EDGES} if later is None else set(later)
     overlaps, meetings = overlaps_of(several)

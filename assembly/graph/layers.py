@@ -1,18 +1,14 @@
-"""Who lies above whom: the heights of the members at each crossing, and the order of laying that follows."""
+"""Who lies above whom in a shell: the heights of its members at each crossing."""
 
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
-import networkx as nx
 import numpy as np
 
 from aag_cad.parts.index import index_of
 from aag_cad.parts.model import Joint, Shell
-from assembly.base.errors import PlanError
-from assembly.graph.circles import circle_links, knots, part_of, relations
-from assembly.graph.laying_units import Overlap
 
 SAME_HEIGHT = 1.0
 
@@ -59,25 +55,3 @@ def stacked_planks(shell: Shell) -> Iterator[tuple[Joint, tuple[str, ...], tuple
         for (low, lower), (high, upper) in pairwise(stack):
             planks = [tuple(sorted(level.mark for level in units[unit])) for unit in (lower, upper)]
             yield joint, planks[0], planks[1], high - low > SAME_HEIGHT
-
-
-def layer_precedence(shell: Shell) -> "nx.DiGraph[str]":
-    """Return beams and flat planks with an edge from each to what lies on it; the edge's ``joints`` say where.
-
-    What lies below must be laid first. Members whose centres differ by less than 1 mm meet end to end and have no
-    order. PlanError with every circle in which the members are woven, so that none of them can be the lowest.
-    """
-    unit_of = index_of(shell).unit_of
-    overlaps = [
-        Overlap(joint.mark, unit_of[lower[0]], unit_of[upper[0]], 0.0, 0.0)
-        for joint, lower, upper, lies in stacked_planks(shell)
-        if lies
-    ]
-    graph = relations(unit_of.values(), overlaps)
-    if found := knots(graph):
-        told = "\n".join(f"{', '.join(knot)}: {circle_links(part_of(graph, knot))}" for knot in found)
-        raise PlanError(
-            f"{told}\nnone of them can be laid first; give each family a layer of its own, or join one of these planks "
-            "after the others are in place"
-        )
-    return graph

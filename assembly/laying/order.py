@@ -20,7 +20,6 @@ from assembly.base.errors import PlanError
 from assembly.base.shell_axes import best_plane, shell_view, sweep_direction
 from assembly.graph.gridshell_graph import assembly_graph
 from assembly.graph.interlacing import Interlacing, Slide, interlacing, refuse_left_out
-from assembly.graph.layers import layer_precedence
 from assembly.graph.laying_units import Unit, units_of
 from assembly.laying.footpath import shorter_path
 from assembly.laying.walking import (
@@ -196,14 +195,11 @@ def _floor_order(
     return FlatOrder(tuple(laid), rows, tuple(slides), stacks)
 
 
-def flat_order(shell: Shell, woven: Interlacing | None = None) -> FlatOrder:
+def flat_order(shell: Shell, woven: Interlacing) -> FlatOrder:
     """Return the order of laying a shell flat (paper section 3.2), its studs in whole ``courses`` from the foot up.
 
-    The floor is the shell seen square on. ``woven`` is the interlacing of the graph of its gridshell, and says what is
-    slid in. PlanError if the layers are woven so that no order exists, without it even if planks could be slid in.
+    The floor is the shell seen square on; ``woven`` is the interlacing of the graph of its gridshell.
     """
-    if woven is not None:
-        refuse_left_out(woven)
     axes = shell_view(shell).axes[:2]
     ends: dict[str, list[Floats]] = defaultdict(list)
     sorts: dict[str, _Sort] = {}
@@ -215,9 +211,8 @@ def flat_order(shell: Shell, woven: Interlacing | None = None) -> FlatOrder:
         lengths[unit] = max(lengths[unit], long)
     lines = {unit: _line(on_floor(np.mean(found, axis=0)), lengths[unit]) for unit, found in ends.items()}
     studs = {stud.mark: _point(on_floor(np.array(stud.frame.origin) @ axes.T)) for stud in shell.studs}
-    precedence = woven.precedence if woven else layer_precedence(shell)
-    slides = [slide for slide in woven.slides if slide.unit in lines] if woven else []
-    return _floor_order(lines, sorts, precedence, slides, courses(stud_rows(shell), studs))
+    slides = [slide for slide in woven.slides if slide.unit in lines]
+    return _floor_order(lines, sorts, woven.precedence, slides, courses(stud_rows(shell), studs))
 
 
 def flat_orders(gridshell: Gridshell) -> dict[str, FlatOrder]:
@@ -226,6 +221,7 @@ def flat_orders(gridshell: Gridshell) -> dict[str, FlatOrder]:
     PlanError that names every circle of members of which none can be slid in.
     """
     woven = interlacing(assembly_graph(gridshell))
+    refuse_left_out(woven)
     return made_for_each(gridshell, lambda shell: flat_order(shell, woven))
 
 
