@@ -19,6 +19,7 @@ from assembly.base.steps import (
     WholeShell,
 )
 from assembly.booklet.segment_cards import brace_text
+from assembly.drawing.names import phase_name
 
 _KINDS = {"W": "screw", "B": "bolt", "K": "block", "R": "strap", "N": "stud"}
 _NOTES = "{notes}"
@@ -26,8 +27,9 @@ _NOTES = "{notes}"
 
 @dataclass(frozen=True)
 class StepWords:
-    """The words of a step in one language; ``hold`` is what to check before work goes on, or ""."""
+    """The words of a step in one language, its phase by name; ``hold`` is what to check before work goes on, or ""."""
 
+    phase: str
     title: str
     tools: tuple[str, ...]
     instructions: tuple[str, ...]
@@ -103,6 +105,7 @@ def step_words(step: Step, language: Language) -> StepWords:
     """Return all that the card of a step says in a language."""
     tools = says(language, f"{step.card.key}.tools", **step.card.figures)
     return StepWords(
+        phase=phase_name(step.phase, language),
         title=step_title(step, language),
         tools=(*tools, say(language, "steps.gear")) if step.gear else tools,
         instructions=tuple(_instructions(step, language)),
