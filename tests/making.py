@@ -9,9 +9,11 @@ from aag_cad.language import Sentence, Text, text
 from aag_cad.parts.model import Gridshell
 from assembly.base.phases import Phase, is_down
 from assembly.base.steps import Plan, Step
+from assembly.booklet.cards import Known, Sheets
+from assembly.booklet.words import sheet_words
 from assembly.plan.assembly_plan import plan_of
 from assembly.plan.durations import step_minutes
-from assembly.plan.schedule import schedule_of
+from assembly.plan.schedule import Schedule, schedule_of
 from assembly.plan.step_cards import card, spanners
 
 
@@ -46,3 +48,9 @@ def planned_work(gridshell: Gridshell, steps: Sequence[Step], crew: Crew) -> Pla
 def work_of(gridshell: Gridshell, people: int) -> PlannedWork:
     """Return the whole plan of a gridshell with its schedule for a crew."""
     return planned_work(gridshell, plan_of(gridshell, people, 25.0).steps, a_crew(people))
+
+
+def sheets_for(plan: Plan, known: Known) -> Sheets:
+    """Return what the cards of a plan are made from, without its schedule."""
+    words = sheet_words("disassembly" if is_down(plan.steps[0].phase) else "sequence", known.language)
+    return Sheets("sequence", plan.name, plan, Schedule(plan.name, 4, 480, (), (), 0), known, words)

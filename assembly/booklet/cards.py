@@ -10,11 +10,14 @@ from assembly.base.mark_ranges import named_marks, ranges_of, short_in
 from assembly.base.phases import PHASES
 from assembly.base.steps import Plan, Step, carried
 from assembly.booklet.step_words import step_title, step_words
+from assembly.booklet.words import Kind
 from assembly.drawing.names import phase_name
+from assembly.plan.schedule import Schedule
 
 Weights: TypeAlias = Mapping[str, tuple[float, float]]
 
 _WORTH_SAYING = 1.0
+_MOST_PROPS = 30
 # A square code of the size on the card stays readable for a telephone up to here.
 _QR_CHARACTERS = 300
 
@@ -30,6 +33,18 @@ class Known:
     joints: Mapping[str, str]
     weights: Weights
     language: Language
+
+
+@dataclass(frozen=True)
+class Sheets:
+    """What the sheets of a booklet are made from: its plan and schedule, what is known of its parts, its words."""
+
+    kind: Kind
+    title: str
+    plan: Plan
+    schedule: Schedule
+    known: Known
+    words: Mapping[str, Any]
 
 
 def length_words(mm: float) -> str:
@@ -89,38 +104,45 @@ def gathered(extras: Sequence[str]) -> list[str]:
 
 
 def step_card(
-    plan: Plan, step: Step, known: Known, table: dict[str, Any] | None, parts: Iterable[str]
+    sheets: Sheets, step: Step, table: dict[str, Any] | None, parts: Sequence[str], handled: Iterable[str]
 ) -> dict[str, Any]:
     """Return what the card of a step of putting together or of taking down prints, without its pictures.
 
-    ``parts`` are those of its marks that are listed beside its ``table``.
+    ``parts`` are those of its marks that are listed beside its ``table``; a search finds all that is ``handled``.
     """
+    known, said = sheets.known, sheets.words["card"]
     language, weights = known.language, known.weights
     words = step_words(step, language)
-    titles = {s.id: f"{s.number}  {step_title(s, language)}" for s in plan.steps}
-    chapter = [s for s in plan.steps if s.shell == step.shell]
+    titles = {s.id: f"{s.number}  {step_title(s, language)}" for s in sheets.plan.steps}
+    chapter = {s.phase for s in sheets.plan.steps if s.shell == step.shell}
     moved = carried(step.phase, step.marks, step.assemblies, step.segments)
     heaviest = max((mark for mark in moved if mark in weights), key=lambda mark: (weights[mark][0], mark), default="")
     told = bool(heaviest) and weights[heaviest][0] >= _WORTH_SAYING
-    added = sum(weights[mark][0] for mark in step.marks)
+    piece = f"{heaviest}: {mass_words(weights[heaviest][0], language)}" if told else ""
+    added = mass_words(sum(weights[mark][0] for mark in step.marks), language)
+    props = [short_in(mark, step.shell) for mark in step.propped]
+    more = f" {said['and_more'].format(count=len(props) - _MOST_PROPS)}" if len(props) > _MOST_PROPS else ""
     return {
         "number": step.number,
         "id": step.id,
         "phase": step.phase,
-        "phases": [[phase_name(p, language), p == step.phase] for p in PHASES if any(s.phase == p for s in chapter)],
+        "phases": [[phase_name(phase, language), phase == step.phase] for phase in PHASES if phase in chapter],
         "title": words.title,
         "shell": step.shell,
+        "line": said["shell"].format(shell=step.shell) if step.shell else "",
         "parts": part_rows(known, parts),
-        "pieces": len(step.marks),
-        "added": mass_words(added, language) if step.marks else "",
-        "heaviest": f"{heaviest}: {mass_words(weights[heaviest][0], language)}" if told else "",
+        "added": said["parts_up" if sheets.kind == "sequence" else "parts_down"].format(
+            pieces=len(step.marks), mass=added
+        ),
+        "heaviest": said["heaviest"].format(piece=piece) if piece else "",
         "table": table,
         "tools": list(words.tools),
         "crew": step.crew,
         "after": [titles[before] for before in step.predecessors],
         "instructions": list(words.instructions),
         "hold": words.hold,
-        "props": [short_in(mark, step.shell) for mark in step.propped],
+        "propped": ", ".join(props[:_MOST_PROPS]) + more,
         "extras": gathered(words.extras),
-        "qr": qr_text(plan.name, step, weights),
+        "qr": qr_text(sheets.plan.name, step, weights),
+        "handled": sorted(set(handled)),
     }

@@ -1,6 +1,6 @@
 """What the booklets of a gridshell print: words, tables and pictures as plain data, for paper and for telephones."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,12 +10,11 @@ from aag_cad.parts.marks import joint_of, parse_mark
 from aag_cad.parts.model import Gridshell
 from assembly.base.phases import PHASE
 from assembly.base.steps import Plan, Step
-from assembly.booklet.booklet_data import Booklet, Handled, Kind, booklet_data, card_lines, sheet_words
+from assembly.booklet.booklet_data import Booklet, booklet_of
 from assembly.booklet.card_tables import gridshell_known, step_table, totals
-from assembly.booklet.cards import Known, step_card
+from assembly.booklet.cards import Known, Sheets, step_card
 from assembly.booklet.drawn_pages import Made, laying_pages, locking_pages, map_pages, segment_pages
-from assembly.booklet.qr import qr_svg
-from assembly.booklet.step_words import step_title
+from assembly.booklet.words import Kind, sheet_words
 from assembly.drawing.joint_sections import block_section_svg, node_section_svg
 from assembly.drawing.perspective import perspective_svg
 from assembly.pictures.backgrounds import Backgrounds, backgrounds_of
@@ -56,30 +55,29 @@ def _caption(step: Step) -> str:
     return step.phase
 
 
-def _cards(
-    kind: Kind, words: Mapping[str, Any], plan: Plan, backgrounds: Backgrounds, common: Common, pictures: dict[str, str]
-) -> Iterator[dict[str, Any]]:
+def _handled(step: Step, index: Index) -> Iterable[str]:
+    """Return what a step handles: its parts, beams, shells, and the planks that it fastens."""
+    joints = {joint_of(mark) for mark in step.marks} if PHASE[step.phase].fastens else set[str]()
+    members = (mark for joint in joints if joint in index.joints for mark in index.joints[joint].members)
+    return (*step.marks, *step.assemblies, *(index.unit_of[mark] for mark in members if mark in index.unit_of))
+
+
+def _cards(sheets: Sheets, backgrounds: Backgrounds, pictures: dict[str, str]) -> Iterator[dict[str, Any]]:
     """Yield the cards of all steps; their pictures are added to ``pictures``, those of steps alike only once."""
     gridshell, drawn = backgrounds.gridshell, dict[tuple[object, ...], list[str]]()
-    for step in plan.steps:
+    for step in sheets.plan.steps:
+        table = step_table(gridshell, sheets.plan, step, sheets.known)
         listed = () if PHASE[step.phase].listed else step.marks
-        card = step_card(plan, step, common.known, step_table(gridshell, plan, step, common.known), listed)
         key = picture_key(backgrounds, step)
         if key not in drawn:
             made = {f"step-{step.number}-{i}": picture for i, picture in enumerate(step_pictures(backgrounds, step))}
             pictures |= made
             drawn[key] = list(made)
-        pictures[f"qr-{step.number}"] = qr_svg(card["qr"])
-        yield (
-            card
-            | card_lines(kind, words, step, card)
-            | {
-                "caption": words["captions"].get(_caption(step), ""),
-                "pictures": drawn[key],
-                "qr": f"qr-{step.number}",
-                "key": f"key-{home}" if (home := home_shell(step) or _alone(step)) else "",
-            }
-        )
+        yield step_card(sheets, step, table, listed, _handled(step, index_of(gridshell))) | {
+            "caption": sheets.words["captions"].get(_caption(step), ""),
+            "pictures": drawn[key],
+            "key": f"key-{home}" if (home := home_shell(step) or _alone(step)) else "",
+        }
 
 
 def common_of(gridshell: Gridshell, language: Language) -> Common:
@@ -97,35 +95,20 @@ def _booklet(kind: Kind, planned: Planned, common: Common) -> tuple[Booklet, Bac
     plan, schedule = (planned.plan, planned.schedule) if up else (planned.down, planned.down_schedule)
     gridshell, pictures = common.gridshell, dict(common.pictures)
     weights = {**common.known.weights, **segment_weights(gridshell, planned.segmentation)}
-    common = replace(common, known=replace(common.known, weights=weights))
+    known, words = replace(common.known, weights=weights), sheet_words(kind, common.language)
+    sheets = Sheets(kind, gridshell.title, plan, schedule, known, words)
     slides = [slide for order in planned.orders.values() for slide in order.slides]
-    words = sheet_words(kind, common.language)
     backgrounds = backgrounds_of(plan, gridshell, planned.segmentation, slides, common.language)
-    data, pictures["schedule"] = booklet_data(
-        kind,
-        gridshell.title,
-        words,
-        plan,
-        schedule,
-        totals(gridshell, common.known),
-        _cards(kind, words, plan, backgrounds, common, pictures),
-        common.language,
+    booklet = booklet_of(
+        sheets,
+        totals(gridshell, known),
+        _cards(sheets, backgrounds, pictures),
+        pictures,
         cover="vault",
         rest=words["list"]["site"],
+        example=next(iter((*index_of(gridshell).geodesics, *index_of(gridshell).planks))),
     )
-    index = index_of(gridshell)
-    example = next(iter((*index.geodesics, *index.planks)))
-    return Booklet(data | common.maps, pictures, tuple(_handled(plan, index, common.language)), example), backgrounds
-
-
-def _handled(plan: Plan, index: Index, language: Language) -> Iterator[Handled]:
-    """Yield for each step its number, title and what it handles: its parts, beams, shells, and planks it fastens."""
-    for step in plan.steps:
-        own = set(step.marks)
-        joints = {joint_of(mark) for mark in own} if PHASE[step.phase].fastens else set[str]()
-        members = (mark for joint in joints if joint in index.joints for mark in index.joints[joint].members)
-        fastened = {index.unit_of[mark] for mark in members if mark in index.unit_of}
-        yield step.number, step_title(step, language), sorted({*own, *step.assemblies, *fastened})
+    return Booklet(booklet.data | common.maps, pictures), backgrounds
 
 
 def _how(words: Mapping[str, Any], plan: Plan, backgrounds: Backgrounds, cards: Sequence[Mapping[str, Any]]) -> Made:
@@ -160,7 +143,7 @@ def sequence_booklet(planned: Planned, common: Common) -> Booklet:
     ):
         data |= more
         pictures |= drawn
-    return replace(booklet, data=data, pictures=pictures)
+    return Booklet(data, pictures)
 
 
 def disassembly_booklet(planned: Planned, common: Common) -> Booklet:

@@ -1,7 +1,7 @@
 """The booklet of any graph of parts: the weave from above, its pieces, its steps with their pictures."""
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from itertools import chain
 from typing import Any
 
@@ -13,10 +13,9 @@ from aag_cad.units import MM_PER_M
 from assembly.base.mark_ranges import short_in
 from assembly.base.names import node_text
 from assembly.base.steps import Plan, Step
-from assembly.booklet.booklet_data import Booklet, Handled, booklet_data, card_lines, sheet_words
-from assembly.booklet.cards import Known, card_table, length_words, mass_words, step_card
-from assembly.booklet.qr import qr_svg
-from assembly.booklet.step_words import step_title
+from assembly.booklet.booklet_data import Booklet, booklet_of
+from assembly.booklet.cards import Known, Sheets, card_table, length_words, mass_words, step_card
+from assembly.booklet.words import sheet_words
 from assembly.graph.interlacing import interlacing
 from assembly.graph.laying_units import units_of
 from assembly.graph.whole import whole_graph
@@ -85,35 +84,28 @@ def _totals(graph: "nx.MultiGraph[str]", floor: Floor, known: Known) -> dict[str
     return card_table(language, "whole", rows) | {"facts": told}
 
 
+def _handled(graph: "nx.MultiGraph[str]", floor: Floor, step: Step) -> Iterable[str]:
+    """Return what a step handles: its parts, beams and joints, and the pieces that these tie."""
+    joints = joints_of_step(floor, step)
+    tied = (floor.planks.get(other, other) for mark in step.marks for other in (graph[mark] if joints else ()))
+    return (*step.marks, *step.assemblies, *joints, *tied)
+
+
 def _cards(
-    words: Mapping[str, Any], plan: Plan, floor: Floor, known: Known, pictures: dict[str, str]
+    sheets: Sheets, graph: "nx.MultiGraph[str]", floor: Floor, pictures: dict[str, str]
 ) -> Iterator[dict[str, Any]]:
     """Yield the cards of all steps; their pictures are added to ``pictures``."""
     there: list[str] = []
-    for step in plan.steps:
-        own, name = units_of_step(floor, step), f"step-{step.number}"
+    for step in sheets.plan.steps:
+        own, name, key = units_of_step(floor, step), f"step-{step.number}", key_svg(floor, step)
         listed = [mark for mark in step.marks if mark not in own]
-        card = step_card(plan, step, known, _table(floor, step, known), listed)
-        pictures |= {name: floor_svg(floor, step, there), f"qr-{step.number}": qr_svg(card["qr"])}
-        if key := key_svg(floor, step):
-            pictures[f"key-{step.number}"] = key
+        pictures |= {name: floor_svg(floor, step, there)} | ({f"key-{step.number}": key} if key else {})
         there += own
-        yield card | card_lines("sequence", words, step, card) | {
+        yield step_card(sheets, step, _table(floor, step, sheets.known), listed, _handled(graph, floor, step)) | {
+            "caption": sheets.words["captions"][f"graph {step.phase}"],
             "pictures": [name],
-            "caption": words["captions"][f"graph {step.phase}"],
-            "qr": f"qr-{step.number}",
             "key": f"key-{step.number}" if key else "",
-        }  # fmt: skip
-
-
-def _handled(graph: "nx.MultiGraph[str]", plan: Plan, floor: Floor, language: Language) -> Iterator[Handled]:
-    """Yield for each step its number, title and what it handles: its parts, beams, joints, and what these tie."""
-    for step in plan.steps:
-        joints = joints_of_step(floor, step)
-        tied = (
-            {floor.planks.get(other, other) for mark in step.marks for other in graph[mark]} if joints else set[str]()
-        )
-        yield step.number, step_title(step, language), sorted({*step.marks, *step.assemblies, *joints, *tied})
+        }
 
 
 def graph_booklet(graph: "nx.Graph[str]", plan: Plan, schedule: Schedule, language: Language = "en") -> Booklet:
@@ -122,20 +114,17 @@ def graph_booklet(graph: "nx.Graph[str]", plan: Plan, schedule: Schedule, langua
     units = units_of(whole)
     floor = floor_of(whole, units, interlacing(whole, later=()))
     known, words = _known(whole, floor, language), sheet_words("sequence", language, "graph")
-    pictures = {"cover": cover_svg(floor)}
-    data, pictures["schedule"] = booklet_data(
-        "sequence",
-        plan.name,
-        words,
-        plan,
-        schedule,
+    sheets, pictures = Sheets("sequence", plan.name, plan, schedule, known, words), {"cover": cover_svg(floor)}
+    booklet = booklet_of(
+        sheets,
         _totals(whole, floor, known),
-        _cards(words, plan, floor, known, pictures),
-        language,
+        _cards(sheets, whole, floor, pictures),
+        pictures,
         cover="cover",
         rest=plan.name,
+        example=next(iter(units), ""),
     )
-    if len(units) <= _MOST_NAMES:
-        pictures["map"] = map_svg(floor)
-        data["maps"] = [words["floor"] | {"picture": "map", "legend": ""}]
-    return Booklet(data, pictures, tuple(_handled(whole, plan, floor, language)), next(iter(units), ""))
+    if len(units) > _MOST_NAMES:
+        return booklet
+    maps = [words["floor"] | {"picture": "map", "legend": ""}]
+    return Booklet(booklet.data | {"maps": maps}, pictures | {"map": map_svg(floor)})

@@ -25,7 +25,10 @@ def page_html(booklet: Booklet) -> str:
     Its search finds what steps handle.
     """
     data, shared = booklet.data, shared_pictures(booklet.pictures, _shown(booklet.data))
-    search = data["words"]["page"]["search"].format(example=booklet.example)
+    search = data["words"]["page"]["search"].format(example=data["example"])
     # A mark may have blanks in it, but is in one line.
-    marks = [{"number": number, "title": title, "marks": "\n".join(own)} for number, title, own in booklet.handled]
+    marks = [
+        {"number": card["number"], "title": card["title"], "marks": "\n".join(card["handled"])}
+        for card in data["cards"]
+    ]
     return html_page("booklet", data | {"search": search, "marks": marks}, shared.pictures | {"shared": shared.defs})

@@ -2,10 +2,12 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 from aag_cad.findings import Finding
 from aag_cad.language import Figure, Language, figure, say, words_table
+
+Kind: TypeAlias = Literal["sequence", "disassembly"]
 
 
 def booklet_words(language: Language) -> dict[str, Any]:
@@ -18,6 +20,20 @@ def booklet_words(language: Language) -> dict[str, Any]:
 
     words: dict[str, Any] = spoken(words_table("booklet"))
     return words
+
+
+def sheet_words(kind: Kind, language: Language, read: str = "") -> dict[str, Any]:
+    """Return the words of a kind of booklet; its cards are ``read`` in a way of their own where words are given."""
+    words, how = booklet_words(language), read or kind
+    side = "up" if kind == "sequence" else "down"
+    card = words["card"]
+    return words | {
+        "subtitle": words[kind],
+        "foot": words[f"{kind}_foot"],
+        "read": {"title": words["read"]["title"], "lines": words["read"][how]},
+        "list": words["list"] | {"text": words["list"][how]},
+        "card": card | {"extras": card[f"extras_{side}"], "counted": card["at_hand" if side == "up" else "stored"]},
+    }
 
 
 def finding_lines(findings: Iterable[Finding], language: Language) -> list[str]:

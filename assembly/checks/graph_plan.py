@@ -79,10 +79,9 @@ def check_graph_plan(plan: Plan, graph: "nx.Graph[str]", people: int | None = No
     """
     several = as_multigraph(graph)
     named = "".join(f", {finding.mark}, " for finding in plan.findings if finding.severity == "error")
-    told = (
-        mark for mark, node in several.nodes(data=True) if any(f", {n}, " in named for n in (mark, node.get("beam")))
-    )
-    faults = [*numbering_problems(plan), *once_problems(plan, several.nodes, tuple(told))]
+    homes = ((mark, node.get("beam") or mark) for mark, node in several.nodes(data=True))
+    told = [mark for mark, home in homes if f", {mark}, " in named or f", {home}, " in named]
+    faults = [*numbering_problems(plan), *once_problems(plan, several, told)]
     if faults:
         return faults
     before = ancestors(plan)

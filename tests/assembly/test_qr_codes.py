@@ -45,6 +45,6 @@ def booklet(planned: Planned, gridshell: Gridshell) -> Booklet:
 
 def test_the_codes_of_the_cards_can_be_read_from_paper(booklet: Booklet) -> None:
     for card in booklet.data["cards"]:
-        found = re.search(r'viewBox="0 0 (\d+) ', booklet.pictures[card["qr"]])
+        found = re.search(r'viewBox="0 0 (\d+) ', booklet.pictures[f"qr-{card['number']}"])
         assert found is not None
         assert SIDE / int(found[1]) >= LEAST_MODULE, card["id"]
