@@ -270,8 +270,8 @@ def test_steps_parts_and_findings_are_told_in_every_language(case: tuple[Plan, P
         for language in LANGUAGES:
             expected = step_words(step, language)
             assert told["words"][language] == {
-                "title": expected.title, "tools": [*expected.tools], "instructions": [*expected.instructions],
-                "hold": expected.hold, "extras": [*expected.extras],
+                "phase": expected.phase, "title": expected.title, "tools": [*expected.tools],
+                "instructions": [*expected.instructions], "hold": expected.hold, "extras": [*expected.extras],
             }  # fmt: skip
     assert all(set(piece["name"]) == set(LANGUAGES) for piece in data["pieces"])
     for finding, told in zip(plan.findings, data["findings"], strict=True):
