@@ -17,7 +17,7 @@ from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.parts.quantities import mass, sizes
 from aag_cad.units import Vector
 from assembly.base.errors import PlanError
-from assembly.base.names import part_text
+from assembly.base.names import node_text, part_text
 from assembly.base.segments import Brace, PlankPiece, Segment, Segmentation
 from assembly.base.steps import Plan, Step
 from assembly.booklet.step_words import StepWords, step_words
@@ -160,9 +160,9 @@ def gridshell_pieces(gridshell: Gridshell) -> tuple[Piece, ...]:
 
 
 def graph_pieces(graph: "nx.MultiGraph[str]") -> tuple[Piece, ...]:
-    """Return the parts of any graph as pieces, called by their kind."""
+    """Return the parts of any graph as pieces, called by their section or kind."""
     return _pieces(
-        (mark, str(node["kind"]), float(node["mass_kg"]), float(node["length_mm"]))
+        (mark, node_text(node), float(node["mass_kg"]), float(node["length_mm"]))
         for mark, node in graph.nodes(data=True)
     )
 

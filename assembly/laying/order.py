@@ -15,7 +15,7 @@ import numpy as np
 from aag_cad.families import EDGES
 from aag_cad.parts.model import Gridshell, Shell, Stud
 from aag_cad.parts.twins import made_for_each
-from aag_cad.units import Floats, Vector
+from aag_cad.units import Floats
 from assembly.base.errors import PlanError
 from assembly.base.shell_axes import best_plane, shell_view, sweep_direction
 from assembly.graph.gridshell_graph import assembly_graph
@@ -41,7 +41,6 @@ _Sort: TypeAlias = tuple[str, int, str]
 
 # A path that saves less than this share keeps to whole rows, which a crew finds without a map.
 _WORTH_LEAVING_ROWS = 0.01
-STUD_KIND = "stud"
 
 
 @dataclass(frozen=True)
@@ -225,20 +224,6 @@ def flat_orders(gridshell: Gridshell) -> dict[str, FlatOrder]:
     return made_for_each(gridshell, lambda shell: flat_order(shell, woven))
 
 
-def _places(graph: "nx.MultiGraph[str]", studs: Sequence[str], units: Mapping[str, Unit]) -> dict[str, Vector]:
-    """Return the position of each stud: its own, else the mean of the middles of the planks that it is tied to."""
-    home = {part: unit.mark for unit in units.values() for part in unit.parts}
-    found = {}
-    for stud in studs:
-        position = graph.nodes[stud].get("position")
-        if position is None:
-            tied = [units[unit] for unit in sorted({home[part] for part in graph[stud] if part in home})]
-            ends = [point for unit in tied for point in (unit.start, unit.end)] or [(0.0, 0.0, 0.0)]
-            position = np.mean(ends, axis=0).tolist()
-        found[stud] = (position[0], position[1], position[2])
-    return found
-
-
 def graph_floor(units: Iterable[Unit]) -> Floats:
     """Return the axes of the floor on which units lie: the plane nearest to their ends, (2, 3) with one axis a row."""
     return best_plane(np.array([(unit.start, unit.end) for unit in units], dtype=np.float64).reshape(-1, 3))[:2]
@@ -249,8 +234,9 @@ def flat_order_of(
 ) -> FlatOrder:
     """Return the order of laying the shells of a graph (``assembly.graph.gridshell_graph``) flat, one after the other.
 
-    The floor of each shell is the plane nearest to it. ``later`` are units that are not laid: edge planks (family E)
-    if it is None; neither are those that the interlacing leaves out. PlanError if its precedence runs in a circle.
+    Without rows of studs: what is not laid is joined (``assembly.laying.joining``). The floor of each shell is the
+    plane nearest to it. ``later`` are units that are not laid: edge planks (family E) if it is None; neither are those
+    that the interlacing leaves out. PlanError if its precedence runs in a circle.
     """
     units = units_of(graph)
     shells: dict[str, list[Unit]] = defaultdict(list)
@@ -258,25 +244,16 @@ def flat_order_of(
         gone = unit.family in EDGES if later is None else unit.mark in later
         if not gone and unit.mark not in interlacing.left_out:
             shells[unit.shell].append(unit)
-    studs: dict[str, list[str]] = defaultdict(list)
-    for mark in sorted(mark for mark in graph if graph.nodes[mark]["kind"] == STUD_KIND):
-        studs[graph.nodes[mark].get("shell", "")].append(mark)
     orders = []
-    for shell in sorted({*shells, *studs}):
-        axes = graph_floor(shells[shell])
-        lines = {
-            unit.mark: _line(on_floor(np.array([unit.start, unit.end]) @ axes.T), unit.length) for unit in shells[shell]
-        }
-        sorts: dict[str, _Sort] = {unit.mark: (shell, unit.layer or 0, unit.family) for unit in shells[shell]}
-        places = {
-            stud: _point(on_floor(axes @ np.array(position)))
-            for stud, position in _places(graph, studs[shell], units).items()
-        }
+    for shell, own in sorted(shells.items()):
+        axes = graph_floor(own)
+        lines = {unit.mark: _line(on_floor(np.array([unit.start, unit.end]) @ axes.T), unit.length) for unit in own}
+        sorts: dict[str, _Sort] = {unit.mark: (shell, unit.layer or 0, unit.family) for unit in own}
         slides = [slide for slide in interlacing.slides if slide.unit in lines]
-        orders.append(_floor_order(lines, sorts, interlacing.precedence, slides, walking_rows(places)))
+        orders.append(_floor_order(lines, sorts, interlacing.precedence, slides, ()))
     return FlatOrder(
         runs=tuple(run for order in orders for run in order.runs),
-        rows=tuple(row for order in orders for row in order.rows),
+        rows=(),
         slides=tuple(slide for order in orders for slide in order.slides),
         stacks={stack: place for order in orders for stack, place in order.stacks.items()},
     )
