@@ -1,6 +1,10 @@
-"""The reference vault, built once for all tests."""
+"""The reference vault, worked out once for each process of a run and built once for all of them."""
+
+import os
+from pathlib import Path
 
 import pytest
+from builds import build_vault, made_once
 from hypothesis import settings
 
 from aag_cad.design import Design, load_design
@@ -14,6 +18,32 @@ from aag_cad.pipeline import chart_of
 # A slow machine is no error, and a failure must come again in the next run.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
+
+
+# Files that take long begin first, so that no process of a run is left with one at the end.
+LONG_FILES = (
+    "test_main_job.py", "test_fig2_designs.py", "test_ifc_checks.py", "test_sequence_booklet.py", "test_step.py",
+    "test_booklet_language.py", "test_optimised_vault.py", "test_command_line.py", "test_plan_command.py",
+)  # fmt: skip
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Sort the tests by file, the long ones first; each file keeps its order."""
+    places = {name: place for place, name in enumerate(LONG_FILES)}
+    items.sort(key=lambda item: places.get(item.path.name, len(places)))
+
+
+@pytest.fixture(scope="session")
+def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder that all processes of a run share."""
+    own = tmp_path_factory.getbasetemp()
+    return own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+
+
+@pytest.fixture(scope="session")
+def vault_build(run_folder: Path) -> Path:
+    """The folder of a build of the vault in a process of its own, all outputs."""
+    return made_once(run_folder / "vault-build", lambda folder: build_vault(folder, "1"))
 
 
 @pytest.fixture(scope="session")

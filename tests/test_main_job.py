@@ -1,15 +1,13 @@
 """The main job: one design file in, a folder out, twice, and what its summary says."""
 
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import icalendar
 import ifcopenshell
 import pytest
+from builds import build_vault
 from ifcopenshell.util.element import get_pset
 
 from aag_cad.parts.model import Gridshell
@@ -27,24 +25,10 @@ FILES = {
 }  # fmt: skip
 
 
-def _build(folder: Path, seed: str) -> Path:
-    command = [sys.executable, "-m", "aag_cad", "build", "vault", "-o", str(folder)]
-    # The rest stays as it is here: last digits depend on the kernels that the BLAS takes by its environment.
-    environment = os.environ | {"PYTHONHASHSEED": seed, "HOME": str(folder.parent)}
-    subprocess.run(command, check=True, capture_output=True, env=environment)
-    return folder
-
-
 @pytest.fixture(scope="module")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a build of the vault in a process of its own."""
-    return _build(tmp_path_factory.mktemp("first"), "1")
-
-
-@pytest.fixture(scope="module")
-def summary(built: Path) -> dict[str, Any]:
-    """Its summary."""
-    data: dict[str, Any] = json.loads((built / "summary.json").read_text(encoding="utf-8"))
+def summary(vault_build: Path) -> dict[str, Any]:
+    """The summary of the build."""
+    data: dict[str, Any] = json.loads((vault_build / "summary.json").read_text(encoding="utf-8"))
     return data
 
 
@@ -52,35 +36,36 @@ def _files(folder: Path) -> set[str]:
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_the_folder_holds_every_file_and_nothing_left_over(built: Path, summary: dict[str, Any]) -> None:
-    found = _files(built)
+def test_the_folder_holds_every_file_and_nothing_left_over(vault_build: Path, summary: dict[str, Any]) -> None:
+    found = _files(vault_build)
     blanks = sorted(name for name in found if name.startswith("blanks/"))
     assert blanks == [f"blanks/T-{number:02d}.dxf" for number in range(1, len(blanks) + 1)]
     assert found - set(blanks) == FILES
-    assert summary["files"] == {name: (built / name).stat().st_size for name in found - {"summary.json"}}
+    assert summary["files"] == {name: (vault_build / name).stat().st_size for name in found - {"summary.json"}}
 
 
 def test_the_step_file_of_three_shells_stays_under_15_megabytes(summary: dict[str, Any]) -> None:
     assert summary["files"]["vault.step"] < 15e6
 
 
-def test_a_second_build_gives_the_same_bytes_but_for_the_seconds(built: Path, tmp_path: Path) -> None:
-    again = _build(tmp_path / "again", "2")
-    for name in sorted(_files(built) - {"summary.json"}):
-        assert (built / name).read_bytes() == (again / name).read_bytes(), name
-    first, second = (json.loads((folder / "summary.json").read_text()) for folder in (built, again))
+def test_a_second_build_gives_the_same_bytes_but_for_the_seconds(vault_build: Path, tmp_path: Path) -> None:
+    again = tmp_path / "again"
+    build_vault(again, "2")
+    for name in sorted(_files(vault_build) - {"summary.json"}):
+        assert (vault_build / name).read_bytes() == (again / name).read_bytes(), name
+    first, second = (json.loads((folder / "summary.json").read_text()) for folder in (vault_build, again))
     assert first.pop("seconds") != second.pop("seconds")
     assert first == second
 
 
-def test_calendar_and_ifc_tell_the_same_times(built: Path) -> None:
+def test_calendar_and_ifc_tell_the_same_times(vault_build: Path) -> None:
     """Read back by their own libraries: when each step begins and ends, by its number."""
-    events = icalendar.Calendar.from_ical((built / "schedule.ics").read_bytes()).walk("VEVENT")
+    events = icalendar.Calendar.from_ical((vault_build / "schedule.ics").read_bytes()).walk("VEVENT")
     told = {
         int(str(event["SUMMARY"]).split(" ")[0]): (event["DTSTART"].dt.isoformat(), event["DTEND"].dt.isoformat())
         for event in events
     }
-    file = ifcopenshell.open(str(built / "vault.ifc"))
+    file = ifcopenshell.open(str(vault_build / "vault.ifc"))
     assert told == {
         get_pset(task, "AAG_Step", "StepNumber"): (task.TaskTime.ScheduleStart, task.TaskTime.ScheduleFinish)
         for task in file.by_type("IfcTask")
@@ -88,8 +73,8 @@ def test_calendar_and_ifc_tell_the_same_times(built: Path) -> None:
     assert min(begin for begin, _ in told.values()) == "2027-03-01T07:00:00"
 
 
-def test_gridshell_json_is_the_model_itself(built: Path, gridshell: Gridshell) -> None:
-    assert read_gridshell((built / "gridshell.json").read_text(encoding="utf-8")) == gridshell
+def test_gridshell_json_is_the_model_itself(vault_build: Path, gridshell: Gridshell) -> None:
+    assert read_gridshell((vault_build / "gridshell.json").read_text(encoding="utf-8")) == gridshell
 
 
 def test_the_summary_counts_what_the_paper_counts(summary: dict[str, Any]) -> None:

@@ -4,6 +4,7 @@ import math
 import re
 from dataclasses import replace
 from io import BytesIO
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from assembly.base.segments import Limits
 from assembly.base.steps import Plan, Step
 from assembly.booklet.card_tables import gridshell_known, step_table, totals
 from assembly.booklet.cards import part_rows, step_card
-from assembly.booklet.contents import common_of, disassembly_booklet, sequence_booklet
+from assembly.booklet.contents import common_of, sequence_booklet
 from assembly.booklet.pdf import booklet_pdf
 from assembly.booklet.step_words import step_title, step_words
 from assembly.plan.assembly_plan import plan_of
@@ -47,13 +48,13 @@ def sequence_pdf(planned: Planned, gridshell: Gridshell) -> bytes:
 
 
 @pytest.fixture(scope="module")
-def pages(planned: Planned, gridshell: Gridshell) -> list[str]:
-    return text_of(sequence_pdf(planned, gridshell))
+def pages(vault_build: Path) -> list[str]:
+    return text_of((vault_build / "sequence.pdf").read_bytes())
 
 
 @pytest.fixture(scope="module")
-def down_pages(planned: Planned, gridshell: Gridshell) -> list[str]:
-    return text_of(booklet_pdf(disassembly_booklet(planned, common_of(gridshell, "en"))))
+def down_pages(vault_build: Path) -> list[str]:
+    return text_of((vault_build / "disassembly.pdf").read_bytes())
 
 
 @pytest.fixture(scope="module")
