@@ -53,6 +53,11 @@ def short_in(mark: str, shell: str) -> str:
     return mark.removeprefix(f"{shell}-") if shell else mark
 
 
+def named_in(marks: Sequence[str], shell: str) -> str:
+    """Return marks as one text for a card: in ranges and short if they belong to a shell, and else whole."""
+    return named_marks(marks) if shell else ", ".join(marks)
+
+
 def ranges_of(marks: Sequence[str]) -> tuple[str, ...]:
     """Return the ranges of marks if they are those of a gridshell, and else the marks as they are."""
     try:

@@ -11,7 +11,7 @@ from aag_cad.findings import Finding
 from aag_cad.language import Figure, Text, text
 from assembly.base.errors import PlanError
 from assembly.base.lifters import lifters_of, lifting_findings
-from assembly.base.mark_ranges import named_marks, short_in
+from assembly.base.mark_ranges import named_in, short_in
 from assembly.base.phases import Phase
 from assembly.base.steps import Plan
 from assembly.graph.interlacing import Interlacing, interlacing
@@ -84,9 +84,9 @@ def _laying(basis: _Basis, steps: dict[str, str]) -> Iterator[Work]:
         stack = "-".join(part for part in (first.shell, first.family) if part)
         order = tuple(short_in(mark, first.shell) for mark in group)
         beams = tuple(unit for unit in group if unit not in basis.graph)
-        onto = named_marks(below) if "" in beneath else ", ".join(beneath)
+        onto = named_in(below, first.shell) if "" in beneath else ", ".join(beneath)
         marks = tuple(mark for unit in group for mark in basis.kits[unit])
-        title = _says("lay.title", marks=named_marks(group))
+        title = _says("lay.title", marks=named_in(group, first.shell))
         work = basis.work(f"lay.{counts[first.shell]}", "lay", first.shell, title, marks)
         notes = [
             _says("lay.stack", stack=stack, marks=order) if stack else _says("lay.carry", marks=order),
@@ -105,7 +105,9 @@ def _sliding(basis: _Basis, steps: dict[str, str]) -> Iterator[Work]:
         unit = basis.units[slide.unit]
         counts[unit.shell] += 1
         name, marks = f"slide.{counts[unit.shell]}", basis.kits[unit.mark]
-        work = told_slide(basis.work(name, "slide", unit.shell, slide_title(slide), marks), slide, unit.length)
+        work = told_slide(
+            basis.work(name, "slide", unit.shell, slide_title(slide, unit.shell), marks), slide, unit.length
+        )
         beams = (unit.mark,) if unit.mark not in basis.graph else ()
         after = _steps_of(basis.woven.precedence.predecessors(unit.mark), steps)
         yield replace(work, assemblies=beams, after=after)

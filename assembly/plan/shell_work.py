@@ -73,7 +73,11 @@ def _sliding(basis: _Basis, laid: str) -> Iterator[Work]:
     """Yield the sliding in of planks that are woven between others, one after the other."""
     planks = index_of(basis.shell).planks
     for i, slide in enumerate(basis.order.slides, start=1):
-        work = told_slide(basis.work(f"slide.{i}", "slide", slide_title(slide)), slide, planks[slide.unit].blank.length)
+        work = told_slide(
+            basis.work(f"slide.{i}", "slide", slide_title(slide, basis.shell.mark)),
+            slide,
+            planks[slide.unit].blank.length,
+        )
         yield replace(work, after=(laid,), marks=(slide.unit,))
         laid = work.id
 

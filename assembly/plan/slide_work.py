@@ -4,14 +4,14 @@ from dataclasses import replace
 from math import isfinite
 
 from aag_cad.language import Text, text
-from assembly.base.mark_ranges import named_marks, short_in
+from assembly.base.mark_ranges import named_in, short_in
 from assembly.graph.interlacing import Slide
 from assembly.plan.work import PAIR, Work
 
 
-def slide_title(slide: Slide) -> Text:
-    """Return the title of a slide's step."""
-    return text("steps.slide.title", marks=named_marks((slide.unit,)))
+def slide_title(slide: Slide, shell: str) -> Text:
+    """Return the title of a slide's step in a shell, or in none."""
+    return text("steps.slide.title", marks=named_in((slide.unit,), shell))
 
 
 def told_slide(work: Work, slide: Slide, length: float) -> Work:

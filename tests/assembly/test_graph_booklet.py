@@ -234,3 +234,23 @@ def test_every_part_is_on_one_card_and_in_the_totals() -> None:
     assert listed == {"pieces": len(graph), "parts": len(graph)}
     *kinds, whole = booklet.data["cover"]["totals"]["rows"]
     assert sum(int(row[2]) for row in kinds) == int(whole[2]) == len(graph)
+
+
+def test_marks_that_look_like_ours_stand_whole_where_no_shell_is_said() -> None:
+    marks = ("S1-G-01", "S1-G-02", "S1-G-03")
+    graph = planks(*((mark, along(500.0 * i)) for i, mark in enumerate(marks)))
+    (card,) = made(graph).data["cards"]
+    assert all(mark in card["title"] for mark in marks)
+    for _, node in graph.nodes(data=True):
+        node["shell"] = "S1"
+    (card,) = made(graph).data["cards"]
+    assert card["title"] == "Lay G-01 … G-03"
+    assert [row[0] for row in card["table"]["rows"]] == ["G-03", "G-02", "G-01"]
+
+
+def test_parts_that_nobody_lays_have_a_booklet_too() -> None:
+    graph: nx.Graph[str] = nx.Graph(name="two bolts")
+    for mark in ("a", "b"):
+        graph.add_node(mark, kind="bolt", mass_kg=0.0, length_mm=60.0)
+    graph.add_edge("a", "b", kind="bolted")
+    assert "bolt 60 mm" in printed(made(graph))
