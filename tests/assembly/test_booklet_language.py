@@ -2,11 +2,10 @@
 
 import re
 from collections.abc import Iterable, Iterator
-from io import BytesIO
 from typing import Any
 
 import pytest
-from pypdf import PdfReader
+from pdf_texts import page_texts
 
 from aag_cad.parts.marks import joint_of, parse_mark
 from aag_cad.parts.model import Gridshell, all_parts
@@ -36,14 +35,9 @@ def booklets(planned: Planned, gridshell: Gridshell) -> tuple[Booklet, Booklet]:
     return sequence_booklet(planned, common), disassembly_booklet(planned, common)
 
 
-def page_texts(booklet: Booklet) -> Iterator[str]:
-    for page in PdfReader(BytesIO(booklet_pdf(booklet))).pages:
-        yield " ".join(page.extract_text().split()).replace(TITLE, "")
-
-
 def test_the_german_booklets_have_no_english_words(booklets: tuple[Booklet, Booklet]) -> None:
     for booklet in booklets:
-        pages = list(page_texts(booklet))
+        pages = [page.replace(TITLE, "") for page in page_texts(booklet_pdf(booklet))]
         # Ids of steps such as S1.fix.2 are keys and no words.
         left = {
             (i, word[0]) for i, page in enumerate(pages) for word in ENGLISH.finditer(re.sub(r"\S+\.\S+", "", page))

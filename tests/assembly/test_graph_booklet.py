@@ -5,13 +5,12 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator
-from io import BytesIO
 from typing import Any
 
 import networkx as nx
 import numpy as np
 import pytest
-from pypdf import PdfReader
+from pdf_texts import page_texts
 
 from aag_cad.design_making import Minutes
 from aag_cad.language import LANGUAGES, Language
@@ -44,8 +43,7 @@ def floor(graph: Any) -> Floor:
 
 
 def printed(booklet: Booklet) -> str:
-    pages = PdfReader(BytesIO(booklet_pdf(booklet))).pages
-    return " ".join(" ".join(page.extract_text().split()) for page in pages)
+    return " ".join(page_texts(booklet_pdf(booklet)))
 
 
 def planks(*lines: tuple[str, Points], **more: Any) -> "nx.Graph[str]":

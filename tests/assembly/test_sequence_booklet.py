@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from making import sheets_for
+from pdf_texts import page_texts
 from pypdf import PdfReader
 
 from aag_cad.design import Design
@@ -39,22 +40,18 @@ def plan(planned: Planned) -> Plan:
     return planned.plan
 
 
-def text_of(pdf: bytes) -> list[str]:
-    return [" ".join(page.extract_text().split()) for page in PdfReader(BytesIO(pdf)).pages]
-
-
 def sequence_pdf(planned: Planned, gridshell: Gridshell) -> bytes:
     return booklet_pdf(sequence_booklet(planned, common_of(gridshell, "en")))
 
 
 @pytest.fixture(scope="module")
 def pages(vault_build: Path) -> list[str]:
-    return text_of((vault_build / "sequence.pdf").read_bytes())
+    return page_texts((vault_build / "sequence.pdf").read_bytes())
 
 
 @pytest.fixture(scope="module")
 def down_pages(vault_build: Path) -> list[str]:
-    return text_of((vault_build / "disassembly.pdf").read_bytes())
+    return page_texts((vault_build / "disassembly.pdf").read_bytes())
 
 
 @pytest.fixture(scope="module")
@@ -178,8 +175,7 @@ def test_every_card_of_a_shell_in_segments_is_one_page(alone: Planned, one_shell
     cut = segments(one_shell, Limits(12000.0, 2400.0, 2600.0, math.inf, math.inf))
     plan = plan_of(one_shell, 4, 25.0, locking=alone.locking, segmentation=cut)
     when = schedule_of(plan, step_minutes(plan, one_shell, design.crew.minutes), 4, design.crew.hours_per_day)
-    reader = PdfReader(BytesIO(sequence_pdf(replace(alone, plan=plan, schedule=when, segmentation=cut), one_shell)))
-    pages = [" ".join(page.extract_text().split()) for page in reader.pages]
+    pages = page_texts(sequence_pdf(replace(alone, plan=plan, schedule=when, segmentation=cut), one_shell))
     assert len(cut.segments) == 3
     assert len(pages) == FIRST_PAGES + len(plan.steps) + 1 + len(cut.segments)
     cards = pages[FIRST_PAGES : FIRST_PAGES + len(plan.steps)]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import segno
 from numpy.typing import NDArray
+from pdf_texts import page_texts, undrawn
 from pypdf import PageObject, PdfReader
 
 from aag_cad.export.workshop.labels import labels_pdf
@@ -24,19 +25,32 @@ Modules = NDArray[np.bool_]
 
 
 @pytest.fixture(scope="module")
-def pdf(gridshell: Gridshell) -> PdfReader:
-    return PdfReader(io.BytesIO(labels_pdf(gridshell)))
+def pdf(printed: bytes) -> PdfReader:
+    return PdfReader(io.BytesIO(printed))
 
 
 @pytest.fixture(scope="module")
-def text(pdf: PdfReader) -> str:
-    return "\n".join(page.extract_text() for page in pdf.pages)
+def printed(gridshell: Gridshell) -> bytes:
+    return labels_pdf(gridshell)
+
+
+@pytest.fixture(scope="module")
+def text(printed: bytes) -> str:
+    return "\n".join(undrawn(page).extract_text() for page in PdfReader(io.BytesIO(printed)).pages)
 
 
 @pytest.fixture(scope="module")
 def labelled(text: str) -> list[str]:
     """The marks of planks and beams in the order of the labels."""
     return [word for word in text.split() if re.fullmatch(r"S\d-(A[12]|G|E)-\d+(-[LR])?", word)]
+
+
+def test_the_texts_of_a_page_are_the_same_without_its_drawings(printed: bytes, pdf: PdfReader) -> None:
+    """What ``pdf_texts`` leaves out for other tests holds no text."""
+    pages = page_texts(printed)
+    assert len(pages) == len(pdf.pages)
+    for i in (0, len(pages) - 1):
+        assert pages[i] == " ".join(pdf.pages[i].extract_text().split())
 
 
 def codes(page: PageObject) -> list[tuple[tuple[float, float], Modules]]:
