@@ -172,3 +172,8 @@ def joint_of(text: str) -> str:
     """Return the mark of the joint that a bolt, screw or threaded rod belongs to, or "" for what is none."""
     found = _ADDED.fullmatch(text)
     return found["joint"] if found and found["letter"] in _letters().fasteners else ""
+
+
+def short_in(mark: str, shell: str) -> str:
+    """Return a mark as it stands on a card of a shell: without the shell's own in front, and all others whole."""
+    return mark.removeprefix(f"{shell}-") if shell else mark

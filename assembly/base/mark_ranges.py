@@ -48,11 +48,6 @@ def joined_ranges(marks: Sequence[str]) -> str:
     return ", ".join(mark_ranges(marks))
 
 
-def short_in(mark: str, shell: str) -> str:
-    """Return a mark as it stands on a card of a shell: without the shell's own in front, and all others whole."""
-    return mark.removeprefix(f"{shell}-") if shell else mark
-
-
 def named_in(marks: Sequence[str], shell: str) -> str:
     """Return marks as one text for a card: in ranges and short if they belong to a shell, and else whole."""
     return named_marks(marks) if shell else ", ".join(marks)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from aag_cad.language import Language, figure, say, says
-from assembly.base.mark_ranges import named_marks, ranges_of, short_in
+from aag_cad.parts.marks import short_in
+from assembly.base.mark_ranges import named_marks, ranges_of
 from assembly.base.phases import PHASES
 from assembly.base.steps import Plan, Step, carried
 from assembly.booklet.step_words import step_title, step_words

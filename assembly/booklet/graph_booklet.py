@@ -9,8 +9,8 @@ import networkx as nx
 
 from aag_cad.language import Language, figure, printed, say
 from aag_cad.parts.kinds import is_fastener
+from aag_cad.parts.marks import short_in
 from aag_cad.units import MM_PER_M
-from assembly.base.mark_ranges import short_in
 from assembly.base.names import node_text
 from assembly.base.steps import Plan, Step
 from assembly.booklet.booklet_data import Booklet, booklet_of

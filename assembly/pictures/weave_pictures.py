@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from aag_cad.parts.marks import short_in
 from aag_cad.units import Floats
-from assembly.base.mark_ranges import short_in
 from assembly.base.steps import Step
 from assembly.drawing.svg import (
     Box,

@@ -9,9 +9,10 @@ import networkx as nx
 
 from aag_cad.findings import Finding
 from aag_cad.language import Figure, Text, text
+from aag_cad.parts.marks import short_in
 from assembly.base.errors import PlanError
 from assembly.base.lifters import lifters_of, lifting_findings
-from assembly.base.mark_ranges import named_in, short_in
+from assembly.base.mark_ranges import named_in
 from assembly.base.phases import Phase
 from assembly.base.steps import Plan
 from assembly.graph.interlacing import Interlacing, interlacing

@@ -4,7 +4,8 @@ from dataclasses import replace
 from math import isfinite
 
 from aag_cad.language import Text, text
-from assembly.base.mark_ranges import named_in, short_in
+from aag_cad.parts.marks import short_in
+from assembly.base.mark_ranges import named_in
 from assembly.graph.interlacing import Slide
 from assembly.plan.work import PAIR, Work
 
