@@ -23,7 +23,6 @@ from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_ShapeTool
 from solid_figures import signed_volume
 
-from aag_cad.design import Design
 from aag_cad.errors import FileError, SolidError
 from aag_cad.export.cad.step import write_step
 from aag_cad.parts.forms import Hole
@@ -32,20 +31,17 @@ from aag_cad.parts.kinds import colour
 from aag_cad.parts.mesh import placed, shell_mesh
 from aag_cad.parts.model import Gridshell, Plank, Shell, all_parts, ridge_parts, shell_parts
 from aag_cad.parts.products import part_frame, product_key, product_name
+from aag_cad.parts.store import gridshell_json
 from aag_cad.parts.triangles import Mesh
-from aag_cad.pipeline import gridshell_of
 from aag_cad.solids.products import product_solids
 from aag_cad.units import Floats
 
 WRITE_AGAIN = """
 import sys
 from pathlib import Path
-sys.path[:0] = [sys.argv[1], str(Path(sys.argv[1]).parent)]
-from test_step import excerpt_of
-from aag_cad.design import load_design
 from aag_cad.export.cad.step import write_step
-from aag_cad.pipeline import gridshell_of
-write_step(excerpt_of(gridshell_of(load_design("vault"))), Path(sys.argv[2]))
+from aag_cad.parts.store import read_gridshell
+write_step(read_gridshell(Path(sys.argv[1]).read_text("utf-8")), Path(sys.argv[2]))
 """
 
 
@@ -74,18 +70,13 @@ def excerpt(shell: Shell) -> Shell:
     )
 
 
-def excerpt_of(vault: Gridshell) -> Gridshell:
-    return replace(vault, shells=tuple(excerpt(shell) for shell in vault.shells), joints=())
+def excerpt_of(gridshell: Gridshell) -> Gridshell:
+    return replace(gridshell, shells=tuple(excerpt(shell) for shell in gridshell.shells), joints=())
 
 
 @pytest.fixture(scope="module")
-def vault(design: Design) -> Gridshell:
-    return gridshell_of(design)
-
-
-@pytest.fixture(scope="module")
-def few(vault: Gridshell) -> Gridshell:
-    return excerpt_of(vault)
+def few(gridshell: Gridshell) -> Gridshell:
+    return excerpt_of(gridshell)
 
 
 @pytest.fixture(scope="module")
@@ -170,7 +161,9 @@ def solids_in(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
     return found
 
 
-def read_solids(path: Path) -> list[TopoDS_Shape]:
+@pytest.fixture(scope="module")
+def solids(path: Path) -> list[TopoDS_Shape]:
+    """The solids of the file as another reader finds them, in its order."""
     reader = STEPControl_Reader()
     assert reader.ReadFile(str(path)) == IFSelect_ReturnStatus.IFSelect_RetDone
     reader.TransferRoots()
@@ -284,11 +277,11 @@ def test_each_solid_has_the_colour_of_its_kind(few: Gridshell, text: Text) -> No
             chain = links(text.records[chain])[-1]
         assert target not in styled
         styled[target] = [float(value) for value in text.records[chain].split("',")[1].rstrip(")").split(",")]
-    brep_of = {}
+    brep_of, breps = {}, text.of("MANIFOLD_SOLID_BREP")
     for body in text.of("SHAPE_DEFINITION_REPRESENTATION").values():
         shape, representation = links(body)
         for link in links(text.records[representation]):
-            if link in text.of("MANIFOLD_SOLID_BREP"):
+            if link in breps:
                 brep_of[links(text.records[shape])[0]] = link
     found = occurrences(text)
     for part in shell_parts(few.shells[0]):
@@ -297,8 +290,8 @@ def test_each_solid_has_the_colour_of_its_kind(few: Gridshell, text: Text) -> No
     assert len({tuple(rgb) for rgb in styled.values()}) == len({colour(part) for part in all_parts(few)}) >= 7
 
 
-def test_a_second_reading_finds_every_solid_valid_and_in_its_place(few: Gridshell, path: Path) -> None:
-    read = [(solid, *mass(solid)) for solid in read_solids(path)]
+def test_a_second_reading_finds_every_solid_valid_and_in_its_place(few: Gridshell, solids: list[TopoDS_Shape]) -> None:
+    read = [(solid, *mass(solid)) for solid in solids]
     assert len(read) == len(all_parts(few))
     assert all(BRepCheck_Analyzer(solid).IsValid() for solid, _volume, _centre in read)
     centres = np.array([centre for _solid, _volume, centre in read])
@@ -313,12 +306,17 @@ def test_a_second_reading_finds_every_solid_valid_and_in_its_place(few: Gridshel
     assert len(taken) == len(read)
 
 
-def test_a_second_reading_finds_the_volume_of_each_product(few: Gridshell, path: Path) -> None:
+def test_a_second_reading_finds_the_volume_of_each_product(few: Gridshell, solids: list[TopoDS_Shape]) -> None:
     # The excerpt repeats the same products in three shells, which stand in the file in order.
-    first = read_solids(path)[: len(shell_parts(few.shells[0]))]
+    first = solids[: len(shell_parts(few.shells[0]))]
     made = product_solids(few)
-    expected = sorted(signed_volume(made[product_key(part)], 1e-7) for part in shell_parts(few.shells[0]))
-    assert sorted(signed_volume(solid, 1e-7) for solid in first) == pytest.approx(expected, rel=1e-6)
+    own = {product_key(part): made[product_key(part)] for part in shell_parts(few.shells[0])}
+    kinds: list[TopoDS_Shape] = []
+    for solid in first:
+        if not any(solid.IsPartner(kind) for kind in kinds):
+            kinds.append(solid)
+    expected = sorted(signed_volume(solid, 1e-7) for solid in own.values())
+    assert sorted(signed_volume(solid, 1e-7) for solid in kinds) == pytest.approx(expected, rel=1e-6)
 
 
 def test_the_same_model_gives_the_same_bytes_whatever_was_written_before(few: Gridshell, path: Path) -> None:
@@ -330,10 +328,11 @@ def test_the_same_model_gives_the_same_bytes_whatever_was_written_before(few: Gr
     assert again.read_bytes() == path.read_bytes()
 
 
-def test_another_process_writes_the_same_bytes(path: Path) -> None:
-    again = path.with_name("elsewhere.step")
+def test_another_process_writes_the_same_bytes(few: Gridshell, path: Path) -> None:
+    again, held = path.with_name("elsewhere.step"), path.with_name("few.json")
+    held.write_text(gridshell_json(few), "utf-8")
     subprocess.run(
-        [sys.executable, "-c", WRITE_AGAIN, str(Path(__file__).parent), str(again)],
+        [sys.executable, "-c", WRITE_AGAIN, str(held), str(again)],
         check=True,
         env={**os.environ, "PYTHONHASHSEED": "271"},
     )
@@ -388,13 +387,13 @@ def test_a_folder_that_cannot_be_written_is_named(few: Gridshell, tmp_path: Path
 
 
 def test_the_whole_vault_holds_every_plank_hole_stud_bolt_and_screw_in_15_megabytes(
-    vault: Gridshell, tmp_path: Path
+    gridshell: Gridshell, tmp_path: Path
 ) -> None:
-    write_step(vault, tmp_path / "vault.step")
+    write_step(gridshell, tmp_path / "vault.step")
     assert (tmp_path / "vault.step").stat().st_size < 15e6
     text = read_text(tmp_path / "vault.step")
-    assert set(occurrences(text)) == set(parents_in_the_model(vault))
-    products = {product_key(part): part for part in all_parts(vault)}
+    assert set(occurrences(text)) == set(parents_in_the_model(gridshell))
+    products = {product_key(part): part for part in all_parts(gridshell)}
     assert len(text.of("MANIFOLD_SOLID_BREP")) == len(text.of("STYLED_ITEM")) == len(products)
     radii = Counter(float(body.rstrip(")").split(",")[-1]) for body in text.of("CYLINDRICAL_SURFACE").values())
     holes = Counter(

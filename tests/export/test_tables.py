@@ -7,23 +7,16 @@ from pathlib import Path
 
 import pytest
 
-from aag_cad.design import Design
 from aag_cad.export.office.tables import HOLES_HEADER, PARTS_HEADER, write_tables
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.parts.quantities import largest_twist, mass, smallest_radius
-from aag_cad.pipeline import gridshell_of
 from aag_cad.units import deg_per_m
 
 
 @pytest.fixture(scope="module")
-def vault(design: Design) -> Gridshell:
-    return gridshell_of(design)
-
-
-@pytest.fixture(scope="module")
-def folder(vault: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(gridshell: Gridshell, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("tables")
-    write_tables(vault, folder)
+    write_tables(gridshell, folder)
     return folder
 
 
@@ -59,9 +52,11 @@ def test_a_table_is_plain_csv_with_a_header_line_feeds_and_one_width(
     assert marks == sorted(marks)
 
 
-def test_every_part_of_the_model_has_one_line(vault: Gridshell, parts: dict[str, dict[str, str]], folder: Path) -> None:
-    assert set(parts) == {part.mark for part in all_parts(vault)}
-    assert len(rows(folder / "parts.csv")) == len(parts) == len(all_parts(vault))
+def test_every_part_of_the_model_has_one_line(
+    gridshell: Gridshell, parts: dict[str, dict[str, str]], folder: Path
+) -> None:
+    assert set(parts) == {part.mark for part in all_parts(gridshell)}
+    assert len(rows(folder / "parts.csv")) == len(parts) == len(all_parts(gridshell))
     assert {row["quantity"] for row in parts.values()} == {"1"}
 
 
@@ -75,15 +70,15 @@ def test_the_vault_has_sixty_six_coupled_beams_and_forty_two_geodesics(parts: di
 
 
 def test_sizes_masses_and_strain_of_planks_are_those_of_the_model(
-    vault: Gridshell, parts: dict[str, dict[str, str]]
+    gridshell: Gridshell, parts: dict[str, dict[str, str]]
 ) -> None:
     """Printed to 0.1 mm, 0.1 g, 1 mm of radius and 0.01 deg/m: half a unit of the last digit is allowed."""
-    for plank in (plank for shell in vault.shells for plank in shell.planks):
+    for plank in (plank for shell in gridshell.shells for plank in shell.planks):
         row = parts[plank.mark]
         assert float(row["length_mm"]) == pytest.approx(plank.blank.length, abs=0.051)
         assert (row["width_mm"], row["thickness_mm"]) == ("100", "12")
         assert int(row["holes"]) == len(plank.blank.holes)
-        assert float(row["mass_kg"]) == pytest.approx(mass(plank, vault.timber), abs=0.51e-4)
+        assert float(row["mass_kg"]) == pytest.approx(mass(plank, gridshell.timber), abs=0.51e-4)
         radius = smallest_radius(plank)
         assert float(row["min_radius_mm"] or math.inf) == pytest.approx(radius, abs=0.51)
         assert float(row["max_twist_deg_per_m"]) == pytest.approx(deg_per_m(largest_twist(plank)), abs=0.0051)
@@ -101,15 +96,15 @@ def test_words_of_a_line_say_what_a_part_is(parts: dict[str, dict[str, str]]) ->
     assert parts["S3-N-001"]["product"] == "Hexagon stud 24 x 220"
 
 
-def test_the_masses_add_up_to_the_total_of_the_model(vault: Gridshell, parts: dict[str, dict[str, str]]) -> None:
-    total = sum(mass(part, vault.timber) for part in all_parts(vault))
+def test_the_masses_add_up_to_the_total_of_the_model(gridshell: Gridshell, parts: dict[str, dict[str, str]]) -> None:
+    total = sum(mass(part, gridshell.timber) for part in all_parts(gridshell))
     assert sum(float(row["mass_kg"]) for row in parts.values()) == pytest.approx(total, abs=0.51e-4 * len(parts))
 
 
 def test_every_hole_has_one_line_in_the_order_of_a_tape_along_the_plank(
-    vault: Gridshell, holes: dict[str, list[dict[str, str]]]
+    gridshell: Gridshell, holes: dict[str, list[dict[str, str]]]
 ) -> None:
-    for plank in (plank for shell in vault.shells for plank in shell.planks):
+    for plank in (plank for shell in gridshell.shells for plank in shell.planks):
         lines = holes.get(plank.mark, [])
         assert [int(line["number"]) for line in lines] == list(range(1, len(plank.blank.holes) + 1))
         for line, hole in zip(lines, plank.blank.holes, strict=True):
@@ -117,7 +112,7 @@ def test_every_hole_has_one_line_in_the_order_of_a_tape_along_the_plank(
             assert float(line["offset_mm"]) == pytest.approx(hole.offset, abs=0.051)
             assert float(line["diameter_mm"]) == hole.diameter
             assert (line["use"], line["joint"]) == (hole.use, hole.joint)
-    assert set(holes) <= {plank.mark for shell in vault.shells for plank in shell.planks}
+    assert set(holes) <= {plank.mark for shell in gridshell.shells for plank in shell.planks}
 
 
 def test_spacings_are_the_differences_of_the_printed_stations(folder: Path) -> None:
@@ -137,7 +132,7 @@ def test_no_figure_is_printed_as_negative_zero(folder: Path) -> None:
     assert "0.0" in values
 
 
-def test_the_same_gridshell_gives_the_same_bytes(vault: Gridshell, folder: Path, tmp_path: Path) -> None:
-    write_tables(vault, tmp_path)
+def test_the_same_gridshell_gives_the_same_bytes(gridshell: Gridshell, folder: Path, tmp_path: Path) -> None:
+    write_tables(gridshell, tmp_path)
     for name in ("parts.csv", "holes.csv", "checks.csv"):
         assert (tmp_path / name).read_bytes() == (folder / name).read_bytes()

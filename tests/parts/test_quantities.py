@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from aag_cad.design import Design
 from aag_cad.geometry.framed import FramedCurve, framed_curve
 from aag_cad.parts.forms import Blank, CrossHole, CrossSection, Frame, Hole
 from aag_cad.parts.kinds import kind_of
@@ -35,7 +34,6 @@ from aag_cad.parts.quantities import (
     smallest_radius,
     volume,
 )
-from aag_cad.pipeline import gridshell_of
 from aag_cad.units import Floats, deg_per_m
 
 ASH = Timber("ash", "D50", 700.0, 14000.0, 880.0, 50.0, 4.5, 1700.0, 1e-3)
@@ -63,16 +61,6 @@ def flat_circle(radius: float, length: float) -> FramedCurve:
     """Return a horizontal circle with a vertical normal: all its curvature is geodesic."""
     curve = helix(radius, 0.0, length)
     return FramedCurve(curve.stations, curve.points, np.tile([0.0, 0.0, 1.0], (len(curve.stations), 1)))
-
-
-@pytest.fixture(scope="module")
-def vault(design: Design) -> Gridshell:
-    return gridshell_of(design)
-
-
-@pytest.fixture(scope="module")
-def shell(vault: Gridshell) -> Shell:
-    return vault.shells[0]
 
 
 def test_a_flat_plank_round_a_cylinder_has_its_radius_and_no_twist() -> None:
@@ -169,9 +157,9 @@ def test_steel_is_steel_and_timber_has_its_species_and_class() -> None:
     assert (kind_of(stud).name, kind_of(stud).material, material_name(stud, ASH)) == ("stud", "timber", "ash D50")
 
 
-def test_steel_of_feet_and_ridge_less_its_holes_has_the_volume_of_its_mesh(vault: Gridshell, shell: Shell) -> None:
+def test_steel_of_feet_and_ridge_less_its_holes_has_the_volume_of_its_mesh(gridshell: Gridshell, shell: Shell) -> None:
     """Folded plates are mitred, so that folds take nothing; a strap is a chord every 120 mm in its mesh: 4e-4."""
-    plates: tuple[Shoe | Blade, ...] = (*shell.shoes, *vault.blades)
+    plates: tuple[Shoe | Blade, ...] = (*shell.shoes, *gridshell.blades)
     for plate in plates:
         bored = plate.plate.thickness * sum(math.pi / 4.0 * hole.diameter**2 for hole in plate.plate.holes)
         assert volume(plate) + bored == pytest.approx(product_mesh(plate).volume, rel=1e-9)
@@ -183,25 +171,25 @@ def test_steel_of_feet_and_ridge_less_its_holes_has_the_volume_of_its_mesh(vault
         assert volume(rod) == pytest.approx(product_mesh(rod).volume, rel=1e-9)
 
 
-def test_a_concrete_block_weighs_its_box_at_2400_kg_per_cubic_metre(vault: Gridshell, shell: Shell) -> None:
+def test_a_concrete_block_weighs_its_box_at_2400_kg_per_cubic_metre(gridshell: Gridshell, shell: Shell) -> None:
     for footing in shell.footings:
-        assert mass(footing, vault.timber) == pytest.approx(0.4 * 0.38 * 0.3 * 2400.0, rel=1e-12)
-        assert material_name(footing, vault.timber) == "concrete"
+        assert mass(footing, gridshell.timber) == pytest.approx(0.4 * 0.38 * 0.3 * 2400.0, rel=1e-12)
+        assert material_name(footing, gridshell.timber) == "concrete"
 
 
-def test_a_shell_weighs_about_what_the_paper_says(vault: Gridshell, shell: Shell) -> None:
+def test_a_shell_weighs_about_what_the_paper_says(gridshell: Gridshell, shell: Shell) -> None:
     """The paper, section 3.2: approx. 300 kg of timber and 30 kg of steel in a shell; a tenth for "approx.".
 
     Bolts and screws of studs and blocks alone are the 30 kg of steel. Shoes, rods, straps, blades and their bolts add
-    some 40 kg here, so the plates of the built vault were lighter or are counted elsewhere.
+    some 40 kg here, so the plates of the built gridshell were lighter or are counted elsewhere.
     """
     masses = {"timber": 0.0, "steel": 0.0}
     beam_joints = {mark for joint in shell.joints if joint.kind in ("AA", "AG", "boundary") for mark in joint.fasteners}
     fasteners = 0.0
     for part in (part for part in shell_parts(shell) if kind_of(part).material in masses):
-        masses[kind_of(part).material] += mass(part, vault.timber)
-        fasteners += mass(part, vault.timber) if part.mark in beam_joints else 0.0
-    masses["steel"] += sum(mass(part, vault.timber) for part in ridge_parts(vault)) / len(vault.shells)
+        masses[kind_of(part).material] += mass(part, gridshell.timber)
+        fasteners += mass(part, gridshell.timber) if part.mark in beam_joints else 0.0
+    masses["steel"] += sum(mass(part, gridshell.timber) for part in ridge_parts(gridshell)) / len(gridshell.shells)
     assert masses["timber"] == pytest.approx(300.0, rel=0.1)
     assert fasteners == pytest.approx(30.0, rel=0.1)
     assert masses["steel"] == pytest.approx(70.0, rel=0.1)
