@@ -21,6 +21,7 @@ from aag_cad.language import Language, printed
 from aag_cad.parts.model import Gridshell
 from aag_cad.parts.store import read_gridshell
 from aag_cad.pipeline import Report, checked_plans, gridshell_of
+from assembly.base.errors import PlanError
 from assembly.base.phases import is_down
 from assembly.base.segments import Limits
 from assembly.booklet.plan_file import read_plan
@@ -101,7 +102,10 @@ def file_faults(path: str, gridshell: Gridshell, crew: Crew, limits: Limits) -> 
     ``limits`` are those of the transport that it is cut for. FileError if the file cannot be read, PlanError if it is
     no plan.
     """
-    plan = read_plan(read_text(path)).plan
+    try:
+        plan = read_plan(read_text(path)).plan
+    except PlanError as error:
+        raise PlanError(f"{path}: {error}") from error
     if any(is_down(step.phase) for step in plan.steps):
         return disassembly_faults(plan, gridshell)
     planned = planned_of(gridshell, crew, limits)
