@@ -191,6 +191,12 @@ def check(
     from aag_cad.design import load_design
 
     read = load_design(design)
+    if plan:
+        from aag_cad.planning import file_faults, plan_in
+        from assembly.plan.planned import limits_of
+
+        # What is no plan is refused before anything is built.
+        given = plan_in(plan)
     from aag_cad.audit import audit
     from aag_cad.findings import finding_row, worst_first
     from aag_cad.pipeline import gridshell_of
@@ -204,10 +210,7 @@ def check(
         report("audit")
         found = [*audit(read, gridshell, purchases)]
         if plan:
-            from aag_cad.planning import file_faults
-            from assembly.plan.planned import limits_of
-
-            found += file_faults(plan, gridshell, read.crew, limits_of(read.transport))
+            found += file_faults(given, gridshell, read.crew, limits_of(read.transport))
         findings = [finding_row(finding) for finding in worst_first(found)]
     _tell(as_json, findings, _findings_table(findings))
     _exit_on_errors(findings, design)

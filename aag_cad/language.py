@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, Literal, TypeAlias, get_args
 
-from aag_cad.errors import DesignError
+from aag_cad.errors import DesignError, FileError
 from aag_cad.resources import template
 
 Language: TypeAlias = Literal["en", "de"]
@@ -69,7 +69,7 @@ def has_words(key: str) -> bool:
     """Return whether a table has words under a key, in any language."""
     try:
         _entry(LANGUAGES[0], key)
-    except KeyError:
+    except (KeyError, TypeError, FileError):
         return False
     return True
 

@@ -24,8 +24,8 @@ from aag_cad.pipeline import Report, checked_plans, gridshell_of
 from assembly.base.errors import PlanError
 from assembly.base.phases import is_down
 from assembly.base.segments import Limits
-from assembly.booklet.plan_file import read_plan
-from assembly.checks.findings import disassembly_faults, graph_plan_faults, plan_faults
+from assembly.booklet.plan_file import PlanFile, read_plan
+from assembly.checks.findings import disassembly_faults, graph_plan_faults, plan_faults, schedule_faults
 from assembly.graph.files import graph_text, read_graph, read_graphml, shipped_graphs
 from assembly.graph.whole import whole_graph
 from assembly.plan.durations import step_minutes
@@ -96,20 +96,25 @@ def planned_source(source: Source, language: Language = "en", edges_first: bool 
     return graph_dossier(plan, schedule, graph, crew, language, source.limits)
 
 
-def file_faults(path: str, gridshell: Gridshell, crew: Crew, limits: Limits) -> tuple[Finding, ...]:
-    """Return what independent walks find wrong with the plan in a file, of putting a gridshell together or down.
-
-    ``limits`` are those of the transport that it is cut for. FileError if the file cannot be read, PlanError if it is
-    no plan.
-    """
+def plan_in(path: str) -> PlanFile:
+    """Return the plan in a file; FileError if the file cannot be read, PlanError with its path if it is no plan."""
     try:
-        plan = read_plan(read_text(path)).plan
+        return read_plan(read_text(path))
     except PlanError as error:
         raise PlanError(f"{path}: {error}") from error
+
+
+def file_faults(file: PlanFile, gridshell: Gridshell, crew: Crew, limits: Limits) -> tuple[Finding, ...]:
+    """Return what independent walks find wrong with the plan of a file, of putting a gridshell together or down.
+
+    ``limits`` are those of the transport that it is cut for.
+    """
+    plan, times = file.plan, {each.step.id: (each.time.start_minute, each.time.end_minute) for each in file.steps}
+    timed = schedule_faults(plan, times, file.people)
     if any(is_down(step.phase) for step in plan.steps):
-        return disassembly_faults(plan, gridshell)
+        return (*disassembly_faults(plan, gridshell), *timed)
     planned = planned_of(gridshell, crew, limits)
-    return plan_faults(plan, gridshell, planned.segmentation, planned.locking)
+    return (*plan_faults(plan, gridshell, planned.segmentation, planned.locking), *timed)
 
 
 def write_plan(dossier: PlanDossier, folder: Path, report: Report = lambda stage: None) -> dict[str, int]:

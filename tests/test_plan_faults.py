@@ -16,7 +16,7 @@ from aag_cad.pipeline import checked_plans, gridshell_of
 from assembly.base.segments import Segmentation
 from assembly.base.steps import Plan, Step
 from assembly.booklet.plan_file import gridshell_pieces, plan_file, plan_json
-from assembly.checks.findings import disassembly_faults, plan_faults
+from assembly.checks.findings import disassembly_faults, plan_faults, schedule_faults
 from assembly.plan.planned import Planned, limits_of
 from assembly.transport.findings import standing_finding
 
@@ -113,6 +113,42 @@ def test_the_command_ends_with_exit_code_1_on_a_damaged_file(
     told = runner.invoke(app, ["check", "vault", "--json", "--plan", str(tmp_path / "bad.json")])
     assert told.exit_code == 1
     assert [row["code"] for row in json.loads(told.stdout) if row["severity"] == "error"] == ["AAG981"]
+
+
+def test_the_times_of_a_plan_are_walked_through_too(planned: Planned) -> None:
+    plan, people = planned.plan, planned.schedule.people
+    times = {step.id: (step.start_minute, step.end_minute) for step in planned.schedule.steps}
+    down = {step.id: (step.start_minute, step.end_minute) for step in planned.down_schedule.steps}
+    assert schedule_faults(plan, times, people) == schedule_faults(planned.down, down, people) == ()
+    second = next(step for step in plan.steps if step.predecessors)
+    for bad, crew, told in (
+        (times | {second.id: (0, 1)}, people, f"{second.id}: begins at minute 0"),
+        (times | {"S1.hoist": (-1, -1)}, people, "S1.hoist: from minute -1 to -1"),
+        (times | {"S1.hoist": times["S1.hoist"][::-1]}, people, "no end before its start"),
+        (times, people - 1, f"{people} people, allowed 1 to {people - 1}"),
+        (dict.fromkeys(times, (0, 10)), people, f"allowed {people}"),
+    ):
+        found = schedule_faults(plan, bad, crew)
+        assert {(one.code, one.severity) for one in found} == {("AAG984", "error")}
+        assert any(told in one.text for one in found), told
+
+
+def test_what_is_no_plan_is_refused_with_its_file_before_anything_is_built(
+    planned: Planned, gridshell: Gridshell, design: Design, tmp_path: Path
+) -> None:
+    data = json.loads(plan_json(plan_file(planned.plan, planned.schedule, design.crew, gridshell_pieces(gridshell))))
+    data["steps"][5]["step"]["title"]["key"] = "no.such.key"
+    for name, text, told in (
+        ("words.json", json.dumps(data), "steps.5: 'no.such.key' has no words"),
+        ("list.json", "[]", "schema_version"),
+        ("cut.json", "{", "not valid JSON"),
+    ):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        result = CliRunner().invoke(app, ["check", "vault", "--plan", str(tmp_path / name)])
+        assert result.exit_code == 2
+        assert f"{name}: " in result.stderr
+        assert told in result.stderr
+        assert "audit" not in result.stderr
 
 
 @pytest.fixture(scope="module")

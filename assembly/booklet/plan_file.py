@@ -12,7 +12,7 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 from aag_cad.design_making import Crew
 from aag_cad.files import json_object
 from aag_cad.findings import Severity
-from aag_cad.language import LANGUAGES, Language, Sentence, printed
+from aag_cad.language import LANGUAGES, Language, Sentence, Text, has_words, printed
 from aag_cad.parts.model import Gridshell, all_parts
 from aag_cad.parts.quantities import mass, sizes
 from aag_cad.units import Vector
@@ -241,10 +241,16 @@ def read_plan(text: str) -> PlanFile:
             f"assembly plan: schema_version {version!r}, allowed {PLAN_VERSION}; write it again with this version"
         )
     try:
-        return _adapter().validate_json(text, strict=True)
+        file = _adapter().validate_json(text, strict=True)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         place = ".".join(map(str, first["loc"]))
         raise PlanError(
             f"assembly plan: {place}: {first['msg']}, found {first['input']!r}; write plans with aag plan"
         ) from error
+    for i, each in enumerate(file.steps):
+        title = each.step.title.key if isinstance(each.step.title, Text) else ""
+        for key in (title, f"{each.step.card.key}.tools"):
+            if key and not has_words(key):
+                raise PlanError(f"assembly plan: steps.{i}: {key!r} has no words; write plans with aag plan")
+    return file

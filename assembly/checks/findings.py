@@ -1,7 +1,7 @@
 """What the independent walks over a plan find, as error findings: one for all faults of a kind."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import networkx as nx
 
@@ -14,6 +14,7 @@ from assembly.base.steps import Plan
 from assembly.checks.disassembly import check_disassembly
 from assembly.checks.graph_plan import check_graph_plan
 from assembly.checks.plan import check_plan
+from assembly.checks.walking import crew_problems, time_problems
 
 # What names one thing among many alike: marks, ids of steps, numbers.
 _NAMES = re.compile(r"\b[\w.+-]*\d[\w.+-]*")
@@ -41,6 +42,14 @@ def plan_faults(
 def disassembly_faults(plan: Plan, gridshell: Gridshell) -> tuple[Finding, ...]:
     """Return what is wrong with a plan of taking down, as AAG982; see ``check_disassembly``."""
     return tuple(_findings("AAG982", check_disassembly(plan, gridshell)))
+
+
+def schedule_faults(plan: Plan, times: Mapping[str, tuple[int, int]], people: int) -> tuple[Finding, ...]:
+    """Return which steps of a plan cannot be done at their times by so many people, as AAG984.
+
+    ``times`` are the minutes of work at which each step begins and ends, by its id.
+    """
+    return tuple(_findings("AAG984", [*crew_problems(plan, people), *time_problems(plan, times, people)]))
 
 
 def graph_plan_faults(plan: Plan, graph: "nx.Graph[str]", people: int) -> tuple[Finding, ...]:

@@ -9,7 +9,7 @@ import networkx as nx
 from aag_cad.parts.kinds import is_fastener
 from assembly.base.any_graph import as_multigraph
 from assembly.base.steps import Plan
-from assembly.checks.walking import ancestors, numbering_problems, once_problems
+from assembly.checks.walking import ancestors, crew_problems, numbering_problems, once_problems
 
 
 def _nodes(graph: "nx.MultiGraph[str]") -> Mapping[str, Mapping[str, Any]]:
@@ -86,7 +86,4 @@ def check_graph_plan(plan: Plan, graph: "nx.Graph[str]", people: int | None = No
         return faults
     before = ancestors(plan)
     faults += [*_buried(plan, several, before), *_unheld(plan, several, before), *_blocked(plan, several, before)]
-    for step in plan.steps:
-        if step.crew < 1 or (people is not None and step.crew > people):
-            faults.append(f"step {step.id}: {step.crew} people, allowed 1 to {people or 'any'}")
-    return faults
+    return [*faults, *crew_problems(plan, people)]

@@ -1,7 +1,7 @@
 """What all walks over a plan ask: whether its steps are numbered in order, what is forced before what, what stands."""
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -21,6 +21,35 @@ def numbering_problems(plan: Plan) -> Iterator[str]:
             if before not in seen:
                 yield f"step {step.id}: predecessor {before} does not come before it"
         seen.add(step.id)
+
+
+def crew_problems(plan: Plan, people: int | None) -> Iterator[str]:
+    """Yield the steps that nobody does, or that take more people than there are (None: any number)."""
+    for step in plan.steps:
+        if step.crew < 1 or (people is not None and step.crew > people):
+            yield f"step {step.id}: {step.crew} people, allowed 1 to {'any' if people is None else people}"
+
+
+def time_problems(plan: Plan, times: Mapping[str, tuple[int, int]], people: int) -> Iterator[str]:
+    """Yield the steps that end before they begin, begin too soon, or need more people at a time than there are.
+
+    ``times`` are the minutes of work from the start at which each step begins and ends, by its id.
+    """
+    changes = Counter[int]()
+    for step in plan.steps:
+        start, end = times[step.id]
+        if not 0 <= start <= end:
+            yield f"step {step.id}: from minute {start} to {end}, allowed 0 or later and no end before its start"
+        for before in (before for before in step.predecessors if before in times):
+            if times[before][1] > start:
+                yield f"step {step.id}: begins at minute {start}, but {before} ends at {times[before][1]}"
+        changes[start] += step.crew
+        changes[end] -= step.crew
+    busy = 0
+    for minute in sorted(changes):
+        busy += changes[minute]
+        if busy > people:
+            yield f"minute {minute}: {busy} people at work, allowed {people}"
 
 
 def once_problems(plan: Plan, parts: Iterable[str], excused: Collection[str] = ()) -> Iterator[str]:
